@@ -43,7 +43,7 @@ class Wheel(unittest.TestCase):
         cls.hide = test_bundle.Bundle.hiding(work / "empty")
 
     def command(self, *words, **more):
-        """What soil-mpm prints, in an empty environment."""
+        """Output of soil-mpm in an empty environment."""
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(self.root), "OMP_NUM_THREADS": "1", "MPLCONFIGDIR": str(self.root), **more}
         done = subprocess.run([*self.hide, self.root / "bin" / "soil-mpm", *map(str, words)], cwd=self.root, env=environment,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

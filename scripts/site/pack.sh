@@ -82,7 +82,7 @@ pack_libraries() {
   rm "$root/.libraries"
 }
 
-# What Debian says of the licence of each library that was copied.
+# Copies the licence of each library, as Debian states it.
 pack_licences() {
   local path package
   command -v dpkg-query >/dev/null || return 0
