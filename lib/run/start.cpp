@@ -36,6 +36,7 @@ PetscErrorCode report_soil(const Stepper& stepper, int ranks, Log& log) {
   PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device%s; strategy %s",
                       stepper.particles(), stepper.patches(), stepper.memory() / 1e6, ranks > 1 ? "s" : "",
                       stepper.strategy().c_str()));
+  if (const std::string bins = stepper.bins_report(); !bins.empty()) PetscCall(log.line(bins));
   if (const auto figures = stepper.rank_figures()) PetscCall(log.line(format_ranks(*figures)));
   if (const std::string batches = stepper.batches_report(); !batches.empty()) PetscCall(log.line(batches));
   PetscFunctionReturn(PETSC_SUCCESS);

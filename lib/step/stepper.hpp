@@ -101,10 +101,11 @@ class Stepper {
   /// lists of another margin, so that bins and lists had to be made anew.
   virtual PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) = 0;
   virtual std::vector<FunctionTime> times() const = 0;
-  virtual long particles() const = 0;        // of the soil
-  virtual int patches() const = 0;           // active ones
-  virtual std::size_t memory() const = 0;    // bytes on the device
-  virtual std::string strategy() const = 0;  // the word of -p2g that runs
+  virtual long particles() const = 0;           // of the soil
+  virtual int patches() const = 0;              // active ones
+  virtual std::size_t memory() const = 0;       // bytes on the device
+  virtual std::string strategy() const = 0;     // the word of -p2g that runs
+  virtual std::string bins_report() const = 0;  // a line on -p2g_bins nodes; empty without it
   /// Line for the log on the batches of -device_memory_limit, and on their cost so far.
   virtual std::string batches_report() const = 0;
 };

@@ -106,9 +106,17 @@ void TypedStepper<Space, T, Dim>::choose_bins(const std::vector<BodyInput>& bodi
   auto& config = run_.config.p2g;
   double half_length = 0;
   for (const BodyInput& body : bodies) half_length = std::max(half_length, body.half_length);
-  if (config.rebuild_interval || !wants_bins_about_nodes(s, half_length)) return;
+  if (config.bins == BinsOf::cells || config.rebuild_interval || !wants_bins_about_nodes(s, half_length))
+    return;
   s.p2g.about_nodes = true;
   s.p2g.margin = config.margin = std::min(config.margin, margin_about_nodes(half_length));
+}
+
+template <class Space, class T, int Dim>
+std::string TypedStepper<Space, T, Dim>::bins_report() const {
+  if (run_.config.p2g.bins == BinsOf::cells) return "";
+  if (run_.state.p2g.about_nodes) return "bins about nodes";
+  return "bins of cells, not about nodes: docs/method.md (Bins about nodes) has the runs that may have these";
 }
 
 template <class Space, class T, int Dim>

@@ -46,6 +46,7 @@ class TypedStepper final : public Stepper {
   int patches() const override { return reports_.patches(); }
   std::size_t memory() const override { return reports_.memory(); }
   std::string strategy() const override { return word_of(chosen(run_.config.p2g.strategy)); }
+  std::string bins_report() const override;
   std::string batches_report() const override { return reports_.of_batches(loop_.seconds()); }
 
  private:

@@ -271,8 +271,12 @@ struct StageConfig {
   std::map<std::string, int> placed_at, removed_at;
 };
 
+/// What the soil is sorted by (-p2g_bins).
+enum class BinsOf { cells, nodes };
+
 struct P2GConfig {
   P2G strategy = P2G::automatic;
+  BinsOf bins = BinsOf::cells;
   double margin = 0.5;                  // cells, 0 < margin <= 0.5
   int mosaic_cells = 3;                 // >= 3
   std::optional<int> rebuild_interval;  // steps

@@ -46,6 +46,12 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
   in.word(
       {.name = "p2g", .meaning = "strategy; auto is the fastest for the backend", .change = k_at_any_restart},
       words, p2g.strategy);
+  in.word(
+      {.name = "p2g_bins",
+       .meaning = "what the soil is sorted by: its cell, or the nearest node, where a GPU has kernels for "
+                  "all that a 3D run asks for",
+       .change = k_at_any_restart},
+      Words<BinsOf>{{"cells", BinsOf::cells}, {"nodes", BinsOf::nodes}}, p2g.bins);
   in.number({.name = "rebuild_margin",
              .meaning = "how far a particle may move before lists and bins are rebuilt",
              .unit = "cells",
