@@ -34,7 +34,7 @@ auto step_of(const State<Space, T, Dim>& s, double dt, int steps) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& points = s.rigid_points[r].points;
     if (points.surface_normal) continue;
-    f.rigids[f.rigid_count++] = {points, s.rigids, r, s.patches.origin, s.spacing};
+    f.rigids[f.rigid_count++] = {points, r};
     f.rigid_teams += (points.count + f.threads - 1) / f.threads;
   }
   return f;

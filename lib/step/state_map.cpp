@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <tuple>
 
 #include "common/material_table.hpp"
 #include "common/text.hpp"
@@ -117,6 +118,13 @@ void replace_columns(const SavedState& fresh, std::vector<std::vector<double>>&&
   state.columns = fresh.columns, state.variables = fresh.variables;
 }
 
+bool same_pores(const PoreConfig& a, const PoreConfig& b) {
+  const auto values = [](const PoreConfig& of) {
+    return std::tie(of.water, of.porosity, of.grain_density, of.permeability, of.kozeny);
+  };
+  return values(a) == values(b);
+}
+
 }  // namespace
 
 std::vector<char> changed_laws(const Config& before, const Config& now) {
@@ -125,7 +133,8 @@ std::vector<char> changed_laws(const Config& before, const Config& now) {
     const MaterialConfig &then = before.materials[before.bodies[b].material],
                          &is = now.materials[now.bodies[b].material];
     changed[b] = then.name != is.name || then.model != is.model || then.parameters != is.parameters ||
-                 then.texts != is.texts || then.pore_stiffness != is.pore_stiffness || then.pores != is.pores;
+                 then.texts != is.texts || then.pore_stiffness != is.pore_stiffness ||
+                 !same_pores(then.pores, is.pores);
   }
   return changed;
 }

@@ -44,7 +44,12 @@ struct PersistentStep {
   using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, domain, k_teams>;
   using NodeUpdate = UpdateNodes<Space, T, Dim, false>;
   using Member = typename Update::Member;
-  using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;
+  /// What RigidSource has of one rigid alone: arguments of a launch are few.
+  struct PointsOfRigid {
+    RigidPoints<Space, T, Dim> points;
+    int rigid;
+  };
+  using Rigids = Kokkos::Array<PointsOfRigid, k_most_rigids>;
   using Sums = NodeSums<Space, T, Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   using Team = typename Update::Team;
@@ -268,7 +273,8 @@ struct PersistentStep {
     const Sums& next = sums[(at.step + 1) % 3];
     MPM_ROLLED
     for (int k = 0; k < rigid_count; ++k) {
-      const auto& source = rigids[k];
+      const RigidSource<Space, T, Dim> source{rigids[k].points, nodes.rigids, rigids[k].rigid,
+                                              nodes.places.origin, nodes.spacing};
       const Rigid<Dim>& body = at.by_all ? at.bodies[source.rigid] : nodes.rigids(source.rigid);
       const RigidPose<Dim> to = end.template pose_after<!WithNodes>(team, source.rigid, body, room);
       const int all = rigid_teams * threads;

@@ -99,8 +99,6 @@ struct PoreConfig {
   double grain_density = 0;  // kg/m3
   double permeability = 0;   // m/s, at the porosity of the start and under WaterConfig::gravity
   bool kozeny = false;       // it changes with the porosity n as n^3 / (1 - n)^2; else it is constant
-
-  bool operator==(const PoreConfig&) const = default;
 };
 
 /// A material: its model's name, density, and the model's parameters in the order of the model's own table.

@@ -148,6 +148,8 @@ void read_side_water(OptionReader& in, const std::string& name, Wall kind, SideC
   const std::string option = name + "_water";
   side.open_to_water = kind == Wall::free;
   if (kind == Wall::periodic && !in.listing()) return in.not_taken(option, "-" + name + " is periodic");
+  if (!in.listing() && in.owners_of("water").empty())
+    return in.not_taken(option, "no body has a material with -NAME_water saturated");
   const bool found =
       in.word({.name = option,
                .meaning = "water that flows in pores: closed: it does not pass the side; open: "
