@@ -1,8 +1,8 @@
 #include "functions/split_patches.hpp"
 
 #include "base/ensure.hpp"
+#include "data/node_bins.hpp"
 #include "physics/walls.hpp"
-#include "rebuild/about_nodes.hpp"
 
 namespace mpm {
 namespace {

@@ -5,6 +5,7 @@
 // of two an edge then reach the same 27 nodes, where those of a cell reach 64.
 
 #include "data/contact_core.hpp"
+#include "data/node_bins.hpp"
 
 namespace mpm {
 
@@ -19,16 +20,6 @@ constexpr double margin_about_nodes(double half_length) { return 0.5 - half_leng
 /// The strategy, the features and the soil must be known. half_length: [cells] the longest of all particles.
 template <class Space, class T, int Dim>
 bool wants_bins_about_nodes(const State<Space, T, Dim>& s, double half_length);
-
-/// The last node along each direction that has a bin. The nodes at an upper wall, which belong to no cell,
-/// have bins too: the grid has a ring of patches outside. At other upper sides particles stay in the last
-/// cell, with a coordinate of up to 1.
-template <class T, int Dim>
-Coord<Dim> last_bins(const Grid<T, Dim>& grid) {
-  Coord<Dim> last;
-  for (int d = 0; d < Dim; ++d) last[d] = grid.cells[d] - (is_mirror(grid.wall[d][1]) ? 0 : 1);
-  return last;
-}
 
 /// Brings each particle that has an address (ParticleSet::address) from its cell to the bin of the nearest
 /// node, before the sort.
