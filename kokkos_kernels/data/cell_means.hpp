@@ -1,5 +1,5 @@
 #pragma once
-// What F-bar needs where bins are about nodes (P2GPlan::about_nodes): the particles of a cell are then in the
+// Sums of F-bar where bins are about nodes (P2GPlan::about_nodes): the particles of a cell are then in the
 // bins of its eight nodes, of up to eight patches.
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace mpm {
 template <class Space, class T>
 struct CellMeans {
   using Memory = typename Space::memory_space;
-  /// Of each particle: bit d is set where its cell is that before its node along direction d, else behind it.
+  /// Place of each particle's cell about its node: bit d is set where the cell lies below the node along d.
   Kokkos::View<std::uint8_t*, Memory> corner;
   /// By the number of the cell: volume [m3], and volume times dilatation rate [m3/s].
   Kokkos::View<Vector<T, 2>*, Memory> sums;

@@ -173,8 +173,8 @@ struct Step {
     if (ranks) finish_sums(s);
     soil_to_nodes(s, stream, boundary);
   }
-  /// What contact needs in some runs: the soil's strength, how the soil of a field lies round a node, and the
-  /// soil's boundary where it is not summed with the soil.
+  /// Sums that contact needs in some runs: the soil's strength, how the soil of a field lies round a node,
+  /// and the soil's boundary where it is not summed with the soil.
   PetscErrorCode sum_at_contacts(const Space& stream, bool boundary) const {
     PetscFunctionBeginUser;
     if (boundary) boundary_to_nodes(s, stream);

@@ -80,7 +80,7 @@ struct NodeTile {
     }
   }
 
-  /// What a warp works on: the particles [first, last) of the stage that are in a lane's bin.
+  /// Particles [first, last) of the stage that are in a lane's bin, which the lane sums.
   struct Range {
     int first, last;
   };

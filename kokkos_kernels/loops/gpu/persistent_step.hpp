@@ -44,7 +44,7 @@ struct PersistentStep {
   using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, domain, k_teams>;
   using NodeUpdate = UpdateNodes<Space, T, Dim, false>;
   using Member = typename Update::Member;
-  /// What RigidSource has of one rigid alone: arguments of a launch are few.
+  /// Members of RigidSource that differ between rigids: the arguments of a launch have little room.
   struct PointsOfRigid {
     RigidPoints<Space, T, Dim> points;
     int rigid;

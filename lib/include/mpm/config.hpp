@@ -269,7 +269,7 @@ struct StageConfig {
   std::map<std::string, int> placed_at, removed_at;
 };
 
-/// What the soil is sorted by (-p2g_bins).
+/// Order of the soil's particles: by their cells, or by their nearest nodes (-p2g_bins).
 enum class BinsOf { cells, nodes };
 
 struct P2GConfig {

@@ -163,7 +163,7 @@ void read_side_water(OptionReader& in, const std::string& name, Wall kind, SideC
 
 namespace {
 
-/// What a run in which water flows has not yet: the first such option, and what it takes.
+/// Rejects the first option that a run in which water flows does not have yet.
 void refuse_beside_flow(OptionReader& in, const Config& config) {
   const std::string where = " where the water of a material flows (-NAME_water saturated)";
   if (config.output.energy) in.reject("output_energy", "off" + where);
