@@ -4,8 +4,8 @@ the history, over a scale of the field. Needs numpy and h5py.
 The scale is the largest value of the field in the reference, but not less than what round-off of the others makes of it.
 With the impedance Z = rho c of the stiffest body, the stress S = max(|sigma|, Z |v|) and the speed S / Z belong together:
 a field that should be zero (the stress of a body that flies freely, the velocity of one at rest) differs by round-off of
-these. An energy has at least the scale M (S / Z)^2 / 2, a force on a rigid S on the face of a cell, a place (such as a
-centre of mass that symmetry puts at the origin) or displacement a cell.
+these. An energy has at least the scale M (S / Z)^2 / 2, a force on a rigid S on the face of a cell, the area of a load that
+face, a place (such as a centre of mass that symmetry puts at the origin) or displacement a cell.
 """
 
 import numpy as np
@@ -64,10 +64,13 @@ class Scales:
         self.spacing = run.number("mesh_spacing")
         self.strain = self.stress / min(modulus for _, modulus in known.values())
         self.momentum = mass(run, groups) * self.velocity
-        self.force = self.stress * self.spacing ** (run.number("dim", 2) - 1)
+        self.face = self.spacing ** (run.number("dim", 2) - 1)
+        self.force = self.stress * self.face
 
     def of_field(self, name):
-        return {"velocity": self.velocity, "grid_velocity": self.velocity, "stress": self.stress,
+        if name.startswith("load_area"):
+            return self.face
+        return {"velocity": self.velocity, "grid_velocity": self.velocity, "darcy_flux": self.velocity, "stress": self.stress,
                 "pore_pressure": self.stress, "excess_pore_pressure": self.stress, "plastic_strain": self.strain}.get(name, 0)
 
     def of_column(self, name):
