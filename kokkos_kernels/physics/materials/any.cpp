@@ -69,7 +69,7 @@ auto start_of(const Law& law, double height, const std::array<double, 6>& stress
               const OwnValues& own = {}, int up = 1) {
   LawState<double, state_size<Law>> state{};
   const auto start = law.initial_state({.height = height, .stress = stress, .own = own, .up = up});
-  for (std::size_t k = 0; k < start.size(); ++k) state[static_cast<int>(k)] = start[k];
+  for (int k = 0; k < static_cast<int>(start.size()); ++k) state[k] = start[k];
   return state;
 }
 
@@ -146,8 +146,8 @@ std::vector<StateVariable> state_variables(const AnyMaterial<double>& material) 
   std::vector<StateVariable> carried;
   material.visit([&](const auto& law) {
     const auto table = law.state();
-    for (std::size_t k = 0; k < table.size(); ++k)
-      if (carries(law, static_cast<int>(k))) carried.push_back(table[k]);
+    for (int k = 0; k < static_cast<int>(table.size()); ++k)
+      if (carries(law, k)) carried.push_back(table[k]);
   });
   return carried;
 }
@@ -186,8 +186,8 @@ std::vector<double> initial_state(const AnyMaterial<double>& material, const Par
   std::vector<double> values;
   material.visit([&](const auto& law) {
     const auto state = law.initial_state(at);
-    for (std::size_t k = 0; k < state.size(); ++k)
-      if (carries(law, static_cast<int>(k))) values.push_back(state[k]);
+    for (int k = 0; k < static_cast<int>(state.size()); ++k)
+      if (carries(law, k)) values.push_back(state[k]);
   });
   return values;
 }
