@@ -27,6 +27,18 @@ def hidden_places():
     return [path for path in dict.fromkeys(paths) if os.path.isdir(path)]
 
 
+def without_licence(root):
+    """Files from elsewhere in a package, and programs, for which share/licences of it has no text; rows of licences that name no file."""
+    folder = root / "share" / "licences"
+    rows = [line.split("\t") for line in (folder / "INDEX.tsv").read_text().splitlines()]
+    told = {place for place, *_ in rows}
+    bare = {place for place, _, name in rows if not any(path.stat().st_size for path in (folder / name).glob("*"))}
+    files = {path.relative_to(root).as_posix() for name in ("lib", "libexec") for path in (root / name).rglob("*") if path.is_file()}
+    own = {name for name in files if re.search(r"/(libmpm_\w*\.so|processor)$", name)}
+    linked = {word for word in ("petsc", "kokkos") if any(word in name for _, _, name in rows)}
+    return sorted((files - own - told) | bare | {place for place in told if not (root / place).exists()} | ({"petsc", "kokkos"} - linked))
+
+
 class Bundle(unittest.TestCase):
     maxDiff = None
 
@@ -71,6 +83,9 @@ class Bundle(unittest.TestCase):
         """mpirun starts as many processes as asked for."""
         text = self.run_bundled("bin/mpirun", "-n", 3, "sh", "-c", "echo rank $OMPI_COMM_WORLD_RANK of $OMPI_COMM_WORLD_SIZE")
         self.assertEqual(sorted(text.split("\n"))[1:], [f"rank {rank} of 3" for rank in range(3)])
+
+    def test_licences(self):
+        self.assertEqual(without_licence(self.root), [])
 
     def test_libraries(self):
         for number, command in enumerate(("bin/mpm -help", "bin/mpirun -n 1 bin/mpm -help")):

@@ -7,6 +7,7 @@ usage: test_wheel.py BUILD_FOLDER
 Exit status 77 where there is no patchelf.
 """
 
+import email
 import json
 import os
 import pathlib
@@ -59,6 +60,31 @@ class Wheel(unittest.TestCase):
         self.assertFalse(any("/bench/" in name or "__pycache__" in name for name in names))
         glibc = [int(number) for number in re.search(r"manylinux_(\d+)_(\d+)_", self.wheel.name).groups()]
         self.assertLessEqual(glibc, [int(number) for number in os.confstr("CS_GNU_LIBC_VERSION").split()[1].split(".")])
+
+    def test_licences(self):
+        """Every library and program has its text, with the common texts that Debian's ones refer to; a text that is missing is found."""
+        program = self.package / "program"
+        folder = program / "share" / "licences"
+        self.assertEqual(test_bundle.without_licence(program), [])
+        asked = {name for path in folder.rglob("*") if path.is_file() for name in
+                 re.findall(r"/usr/share/common-licenses/([\w.+-]*[\w+])", path.read_text(errors="replace"))}
+        there = {path.name for path in pathlib.Path("/usr/share/common-licenses").iterdir()}
+        self.assertEqual(sorted((asked & there) - {path.name for path in (folder / "common").iterdir()}), [])
+        (folder / "petsc").rename(folder / "hidden")
+        self.addCleanup(lambda: (folder / "hidden").rename(folder / "petsc"))
+        self.assertTrue(any(name.endswith("/mpm") for name in test_bundle.without_licence(program)))
+
+    def test_metadata(self):
+        with zipfile.ZipFile(self.wheel) as archive:
+            (name,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+            text = email.message_from_bytes(archive.read(name))
+            licence = archive.read(name.replace("METADATA", f"licenses/{text['License-File']}"))
+        self.assertEqual((text["Name"], text["Requires-Python"], text["License-Expression"]), ("soil-mpm", ">=3.10", "Apache-2.0"))
+        self.assertIn(f"-{text['Version']}-", self.wheel.name)
+        self.assertIn("material point method", text["Summary"])
+        self.assertEqual(licence, (test_bundle.SOURCE / "LICENSE").read_bytes())
+        self.assertEqual(text.get_payload(decode=True).decode(), (test_bundle.SOURCE / "README.md").read_text(encoding="utf-8"))
+        self.assertIn("numpy", text.get_all("Requires-Dist"))
 
     def test_first_deck(self):
         begin = resource.getrusage(resource.RUSAGE_CHILDREN)
