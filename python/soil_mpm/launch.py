@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence
 
 from soil_mpm.problems import NoProgram, RunFailed, WrongDeck
-from soil_mpm.tree import default_program, launcher
+from soil_mpm.tree import default_program, extra_mpi, launcher
 
 if TYPE_CHECKING:
     from soil_mpm.deck import Deck
@@ -39,6 +39,8 @@ def environment(ranks: int = 1, threads: int | None = None, more: Mapping[str, s
         made.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     else:
         made.pop("OMPI_MCA_ess_singleton_isolated", None)
+        if extra_mpi():
+            made.setdefault("MPM_MPI", extra_mpi())
     if threads is not None:
         made["OMP_NUM_THREADS"] = str(threads)
     return {**made, **(more or {})}

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent
@@ -25,6 +26,12 @@ def launcher() -> str:
     """The mpirun of a wheel or a bundle, or that of the machine."""
     own = (PROGRAM / "bin" / "mpirun", ROOT / "bin" / "mpirun")
     return str(next((path for path in own if path.exists()), "mpirun"))
+
+
+def extra_mpi() -> str:
+    """Folder of the Open MPI that `pip install "soil-mpm[mpi]"` has put beside the program of a wheel; empty where there is none."""
+    folder = Path(sys.prefix)
+    return str(folder) if all((folder / name).is_file() for name in ("bin/mpirun", "lib/libmpi.so.40")) and PROGRAM.is_dir() else ""
 
 
 def decks_folder() -> Path:

@@ -101,6 +101,19 @@ class Wheel(unittest.TestCase):
         self.command("run", "footing_coarse", "--ranks", 2, "--no-pictures", "--out", "out/ranks", "-time_end", 0.01, "-output_frames", "off")
         self.assertEqual(json.loads((self.root / "out" / "ranks" / "performance.json").read_text())["ranks"], 2)
 
+    def test_other_mpi(self):
+        """MPM_MPI: ranks by the Open MPI of the machine; a folder without one is refused, and so are ranks that an MPICH starts."""
+        self.hide, hidden = [], self.hide
+        self.addCleanup(setattr, self, "hide", hidden)
+        self.command("run", "footing_coarse", "--ranks", 2, "--no-pictures", "--out", "out/other", "-time_end", 0.01, "-output_frames", "off",
+                     MPM_MPI="machine")
+        self.assertEqual(json.loads((self.root / "out" / "other" / "performance.json").read_text())["ranks"], 2)
+        for variables, words in (({"MPM_MPI": str(self.root)}, "takes own, machine or the folder"), ({"PMI_SIZE": "2"}, "started 2 ranks")):
+            done = subprocess.run([self.package / "program" / "bin" / "mpm", "-version"], capture_output=True, text=True,
+                                  env={"PATH": "/usr/bin:/bin", **variables})
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+
     def test_processor(self):
         """A build for a level of processor that is not here does not start, and says so."""
         (file,) = self.package.glob("program/libexec/*/processor")
