@@ -60,4 +60,12 @@ std::string why_no_gpu() {
   return "";
 }
 
+std::string gpu_bus() {
+#ifdef KOKKOS_ENABLE_CUDA
+  char bus[32] = "";
+  if (cudaDeviceGetPCIBusId(bus, sizeof bus, Kokkos::Cuda().cuda_device()) == cudaSuccess) return bus;
+#endif
+  return "";
+}
+
 }  // namespace mpm

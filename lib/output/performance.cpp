@@ -71,6 +71,8 @@ std::string format_performance(const Performance& p) {
     text += formatted("\n%.3g s of motion in a second of wall time", real_time_factor(p));
   if (p.energy)
     text += formatted("\n%.3g kWh taken by the processors, with all that ran on them", *p.energy / 3.6e6);
+  if (p.gpu_energy)
+    text += formatted("\n%.3g kWh taken by the GPUs, with all that ran on them", *p.gpu_energy / 3.6e6);
   return text;
 }
 

@@ -50,11 +50,12 @@ struct Performance {
   std::string backend, precision;  // words of the options
   std::string processor;           // of rank 0
   int dim = 0, ranks = 1;
-  int threads = 1, cores = 1;      // threads of a rank in its kernels; cores that rank 0 may use
-  long first_step = 0;             // from which this part of the run went on
-  double time = 0;                 // s, simulated, at its end
-  double simulated = 0;            // s, of `time` in this part
-  std::optional<double> energy{};  // J, of the processors of all machines; none where it is not counted
+  int threads = 1, cores = 1;          // threads of a rank in its kernels; cores that rank 0 may use
+  long first_step = 0;                 // from which this part of the run went on
+  double time = 0;                     // s, simulated, at its end
+  double simulated = 0;                // s, of `time` in this part
+  std::optional<double> energy{};      // J, of the processors of all machines; none where it is not counted
+  std::optional<double> gpu_energy{};  // J, of the GPUs of all machines; none where it is not counted
 };
 
 /// The functions with the times of the report: where these add up to more than the steps took, as on a device
@@ -72,7 +73,7 @@ double real_time_factor(const Performance& p);
 
 /// The report, in lines: a table of the functions with calls, seconds, share of the wall time, bytes moved,
 /// bytes per second and their share of the copy bandwidth; then reads of the host, rebuilds, memory,
-/// bandwidth, particle updates per second, simulated time a second, and energy.
+/// bandwidth, particle updates per second, simulated time a second, and energies.
 std::string format_performance(const Performance& p);
 
 /// Lines of the ranks: smallest and largest of each figure.

@@ -93,6 +93,7 @@ std::string performance_json(const Performance& p) {
   m.known("particle_updates_per_second", updates_per_second(p));
   m.known("real_time_factor", real_time_factor(p));
   m.add("energy_joules", p.energy ? json_number(*p.energy) : "null");
+  m.add("gpu_energy_joules", p.gpu_energy ? json_number(*p.gpu_energy) : "null");
   m.known("memory_bytes", p.memory);
   m.known("copy_bandwidth_bytes_per_second", p.bandwidth);
   m.known("moved_bytes_per_second", moved_per_second(p));

@@ -2,8 +2,11 @@
 // Wall time and rebuilds of a run, and the report of its performance.
 
 #include <chrono>
+#include <string>
+#include <utility>
 
 #include "common/energy_meter.hpp"
+#include "common/gpu_energy.hpp"
 #include "run/clock.hpp"
 #include "step/stepper.hpp"
 
@@ -19,7 +22,8 @@ struct Effort {
   struct Part {
     long step = 0;
     double wall = 0, stepping = 0;  // s
-    double time = 0, joules = 0;    // s, simulated; J, of the energy
+    double time = 0;                // s, simulated
+    double joules = 0, gpu = 0;     // J, of the energy of the processors and the GPU
   };
 
   double before = 0, begin = 0;  // s: wall time before a restart; wall clock at the first step since then
@@ -30,7 +34,14 @@ struct Effort {
   double bandwidth = 0;  // bytes/s of the device's copy
   EnergyMeter energy;    // of this machine's processors
   double counted = 0;    // s, wall clock at which it was read last
+  std::string gpu_bus;   // place of this rank's GPU on PCI; empty on a processor
+  GpuEnergyMeter gpu;    // of it
 
+  /// Begins to count the energy of a GPU.
+  void count_gpu(std::string bus) {
+    gpu_bus = std::move(bus);
+    gpu = GpuEnergyMeter(gpu_bus);
+  }
   double wall() const { return before + seconds_now() - begin; }
   /// Reads the counters of energy before they can begin anew twice.
   void count_energy() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "check/gpu.hpp"
 #include "check/own_folder.hpp"
 #include "check/places.hpp"
 #include "check/warnings.hpp"
@@ -101,6 +102,7 @@ PetscErrorCode Run::first_set_up() {
   PetscFunctionBeginUser;
   const Backend backend = job_.config.backend;
   const std::string device = device_key(backend);
+  if (backend == Backend::cuda) effort_.count_gpu(gpu_bus());
   if (job_.is_first())
     effort_.bandwidth = cached_measurement("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
   Model model;
@@ -127,7 +129,8 @@ PetscErrorCode Run::resume() {
   Checkpoint& c = *restarts_.checkpoint();
   clock_.step = c.run.step, clock_.last_dt = c.run.last_dt;
   effort_.before = c.run.wall, effort_.stepping = c.run.stepping, effort_.rebuilds = c.run.rebuilds;
-  effort_.part = {c.run.step, c.run.wall, c.run.stepping, c.run.time, effort_.energy.joules()};
+  effort_.part = {c.run.step,          c.run.wall, c.run.stepping, c.run.time, effort_.energy.joules(),
+                  effort_.gpu.joules()};
   time_step_.go_on(c.run.waves);
   outputs_.take(c);
   PetscCall(adapt_state(job_, clock_, *stepper_, {restarts_.laws_changed(), {}, true}, c.state));
@@ -188,7 +191,8 @@ PetscErrorCode Run::enter_stage(SavedState&& state, const Present& present, NewB
   effort_.part = {.step = clock_.step,
                   .stepping = effort_.stepping,
                   .time = clock_.time(),
-                  .joules = effort_.energy.joules()};
+                  .joules = effort_.energy.joules(),
+                  .gpu = effort_.gpu.joules()};
   if (!job_.goes_well()) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(set_up(std::move(model)));
   if (!job_.goes_well()) PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,6 +20,7 @@
 
 #include "common/collectives.hpp"
 #include "common/energy_meter.hpp"
+#include "common/gpu_energy.hpp"
 #include "input/deck/run_options.hpp"
 #include "output/files.hpp"
 #include "output/folder_lock.hpp"
@@ -545,6 +546,9 @@ TEST_CASE("the report ends with the motion in a second and the energy", "[output
                                       "processors, with all that ran on them"));
   CHECK_THAT(performance_json(p), ContainsSubstring("\"real_time_factor\": 0.05"));
   CHECK_THAT(performance_json(p), ContainsSubstring("\"energy_joules\": 7200000"));
+  p.gpu_energy = 3.6e5;
+  CHECK(format_performance(p).ends_with("\n0.1 kWh taken by the GPUs, with all that ran on them"));
+  CHECK_THAT(performance_json(p), ContainsSubstring("\"gpu_energy_joules\": 360000"));
 }
 
 TEST_CASE("energy is counted over the counters' beginning anew", "[output]") {
@@ -565,6 +569,21 @@ TEST_CASE("energy is counted over the counters' beginning anew", "[output]") {
   meter.read();
   CHECK(meter.joules() == Catch::Approx(0.32885 + 1 + 2));
   CHECK_FALSE(EnergyMeter(folder.path + "/none").found());
+}
+
+TEST_CASE("energy of a GPU is that of its driver's counter", "[output]") {
+  const char* elsewhere = std::getenv("MPM_UMATS");  // where the libraries of the unit tests lie
+  const std::string library =
+      std::string(elsewhere != nullptr ? elsewhere : MPM_UMATS) + "/libmpm_umat_nvml.so";
+  GpuEnergyMeter meter("00000000:1b:00.0", library.c_str());
+  REQUIRE(meter.found());
+  CHECK(meter.joules() == Catch::Approx(2.5));
+  CHECK(meter.joules() == Catch::Approx(2.5));  // the counter fails
+  CHECK(meter.joules() == Catch::Approx(7.5));
+  CHECK_FALSE(GpuEnergyMeter("00000000:2b:00.0", library.c_str()).found());  // no such GPU
+  CHECK_FALSE(GpuEnergyMeter("00000000:1b:00.0", "libno_such.so").found());
+  CHECK_FALSE(GpuEnergyMeter("").found());
+  CHECK(GpuEnergyMeter().joules() == 0);
 }
 
 TEST_CASE("times that the waiting has made longer than the steps are scaled", "[output]") {
@@ -613,6 +632,7 @@ TEST_CASE("performance.json has the figures of the report, with units in the nam
   "particle_updates_per_second": 25000,
   "real_time_factor": null,
   "energy_joules": null,
+  "gpu_energy_joules": null,
   "memory_bytes": 1.9e+07,
   "copy_bandwidth_bytes_per_second": null,
   "moved_bytes_per_second": 7.5e+08,

@@ -92,8 +92,9 @@ def facts(run: Run, log: Log) -> str:
                  ("processes", f"{ranks} rank{'s' * (ranks > 1)} of {threads} thread{'s' * (threads > 1)}, {told['device']}"),
                  ("time", f"{told['end_time_seconds']:.6g} s of motion in {span(told['wall_seconds'])}" + factor),
                  ("speed", f"{told['particle_updates_per_second'] / 1e6:.3g} million particle updates a second")]
-        if told.get("energy_joules") is not None:
-            rows.append(("energy", f"{told['energy_joules'] / 3.6e6:.3g} kWh by the processors, with all that ran on them"))
+        for key, whose in (("energy_joules", "processors"), ("gpu_energy_joules", "GPUs")):
+            if told.get(key) is not None:
+                rows.append(("energy", f"{told[key] / 3.6e6:.3g} kWh by the {whose}, with all that ran on them"))
     return table([(name, str(text)) for name, text in rows])
 
 
