@@ -70,7 +70,7 @@ class Run:
         if not self.frames:
             raise NoSuchResult(f"{self.folder}: no frames; -output_frames off leaves them out")
         if time is not None:
-            return Frame(self, self.frame_near(time))
+            return Frame(self, self.frame_near(time) or self.frames[-1])
         try:
             return Frame(self, self.frames[-1 if number is None else number])
         except IndexError:
@@ -87,27 +87,27 @@ class Run:
         from soil_mpm.report import write
         return write(self.folder, to, pictures)
 
-    def text(self, name, default=""):
+    def text(self, name: str, default: str = "") -> str:
         return self.options.get(name, default)
 
-    def words(self, name):
+    def words(self, name: str) -> list[str]:
         return [word for word in self.text(name).split(",") if word]
 
-    def numbers(self, name, default=()):
+    def numbers(self, name: str, default: Sequence[float] = ()) -> list[float]:
         return [float(word) for word in self.words(name)] or list(default)
 
-    def number(self, name, default=0.0):
+    def number(self, name: str, default: float = 0.0) -> float:
         return self.numbers(name, [default])[0]
 
-    def columns(self, name):
+    def columns(self, name: str) -> np.ndarray:
         """History columns NAMEx, NAMEy [, NAMEz] as an array [rows, dim]."""
         return np.column_stack([self.history[name + axis] for axis in "xyz" if name + axis in self.history])
 
-    def frame_near(self, time):
+    def frame_near(self, time: float) -> Path | None:
         """Path of the frame nearest to a time [s], None without frames."""
         return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
 
-    def displacement(self, rigid, time):
+    def displacement(self, rigid: str, time: float) -> np.ndarray | None:
         """Displacement [dim] of a rigid at a time [s] since it was placed: rows of the history, linearly between them, with what
         came before a stage that a reset ended. None without history."""
         columns = [self.history.get(f"{rigid}_{axis}") for axis in "xyz"[:int(self.text("dim", "2"))]]
@@ -120,24 +120,24 @@ class Run:
                 ways[k + 1:] += ways[k]
         return np.array([np.interp(time, self.history["time"], way) for way in ways.T])
 
-    def angle(self, rigid, time):
+    def angle(self, rigid: str, time: float) -> float:
         """Angle [rad] by which a rigid in 2D has turned at a time [s]; 0 where it does not turn."""
         angles = self.history.get(f"{rigid}_angle")
         return 0.0 if angles is None else float(np.interp(time, self.history["time"], angles))
 
-    def moving_rigids(self):
+    def moving_rigids(self) -> list[str]:
         stages = [f"{stage}_" for stage in self.words("stages")]
         return [name for name in self.words("rigid_bodies")
                 if any(self.text(f"{stage}{name}_motion", "fixed") != "fixed" for stage in ["", *stages])]
 
-    def stage_ends(self):
+    def stage_ends(self) -> list[tuple[str, float]]:
         """[(name, time)] of the stages but the last that the history holds: s, where the next one begins."""
         numbers, names = self.history.get("stage", np.array([])), self.words("stages")
         ends = np.flatnonzero(np.diff(numbers) > 0)
         return [(names[int(numbers[k]) - 1], self.history["time"][k]) for k in ends]
 
 
-def read_options(folder):
+def read_options(folder: Path) -> dict[str, str]:
     path = folder / "options.json"
     if not path.exists():
         print(f"plot: {path} is missing: nothing is known of bodies and rigids", file=sys.stderr)
@@ -147,7 +147,7 @@ def read_options(folder):
     return {name: text for name, text in options.items() if text != "none"}
 
 
-def read_history(path):
+def read_history(path: Path) -> dict[str, np.ndarray]:
     """Columns of history.csv as arrays [rows]; empty if the file or its rows are missing."""
     if not path.exists():
         print(f"plot: {path} is missing: no curve", file=sys.stderr)
@@ -160,37 +160,45 @@ def read_history(path):
     return dict(zip(header, np.array(rows, dtype=float).T))
 
 
-def stage_of(path):
+def stage_of(path: Path | str) -> str:
     """Name of the stage in which a frame was written; empty where the run has none."""
     with h5py.File(path) as file:
         name = file.attrs.get("stage", "")
         return name.decode() if isinstance(name, bytes) else str(name)
 
 
-def time_of(path):
+def time_of(path: Path | str) -> float:
     """Time of a frame [s]."""
     with h5py.File(path) as file:
         return float(file.attrs["time"])
 
 
-def units_of(path):
+def units_of(path: Path | str) -> dict[str, str]:
     """{dataset: SI unit} of all groups of a frame; older frames have none."""
     with h5py.File(path) as file:
         found = {key: data.attrs["unit"] for group in file.values() for key, data in group.items() if "unit" in data.attrs}
     return {key: unit.decode() if isinstance(unit, bytes) else str(unit) for key, unit in found.items()}
 
 
-def read_frame(path):
+def read_frame(path: Path | str) -> tuple[float, dict[str, dict[str, np.ndarray]]]:
     """Time [s] and {group: {field: array}} of one frame."""
     with h5py.File(path) as file:
         groups = {name: {key: data[()] for key, data in group.items()} for name, group in file.items()}
         return float(file.attrs["time"]), groups
 
 
+def read_body(path: Path | str, body: str, *fields: str) -> list[np.ndarray]:
+    """Some fields of a body in a frame, arrays [N] or [N, components]; NoSuchResult where the frame has no particles of it."""
+    with h5py.File(path) as file:
+        if body not in file or "position" not in file[body]:
+            raise NoSuchResult(f"{path}: has no particles of {body}")
+        return [file[body][name][()] for name in fields]
+
+
 # ---------------------------------------------------------------------------------------------- bearing capacity
 
 
-def extent(run, name):
+def extent(run: Run, name: str) -> tuple[float, float]:
     """Lower and upper x of a rigid's or body's shape, m."""
     shape = run.text(f"{name}_shape", "box")
     if shape == "polygon":
@@ -200,8 +208,7 @@ def extent(run, name):
         centre, radius = run.number(f"{name}_centre"), run.number(f"{name}_radius")
         return in_mesh(run, centre - radius, centre + radius)
     if shape == "stl":  # where its particles begin
-        with h5py.File(run.frames[0]) as file:
-            x = file[name]["position"][:, 0]
+        x = read_body(run.frames[0], name, "position")[0][:, 0]
         return float(x.min()), float(x.max())
     if shape in ("half_plane", "layer"):
         return run.number("mesh_lower"), run.number("mesh_upper")
@@ -211,12 +218,12 @@ def extent(run, name):
     return in_mesh(run, min(x), max(x))
 
 
-def in_mesh(run, left, right):
+def in_mesh(run: Run, left: float, right: float) -> tuple[float, float]:
     """Part of an extent in x that a side of the mesh leaves, m."""
     return max(left, run.number("mesh_lower", left)), min(right, run.number("mesh_upper", right))
 
 
-def is_half_model(run, name):
+def is_half_model(run: Run, name: str) -> bool:
     """Does the rigid touch a roller side of the mesh, a plane of symmetry?"""
     left, right = extent(run, name)
     near = 1e-6 * max(run.number("mesh_spacing"), 1e-12)
@@ -224,7 +231,7 @@ def is_half_model(run, name):
         abs(right - run.number("mesh_upper")) < near and run.text("mesh_xmax") == "roller")
 
 
-def strength_below(run, name):
+def strength_below(run: Run, name: str) -> float:
     """Undrained strength [Pa] of the first von_mises or tresca material, at the level of the rigid's underside; 0 if none."""
     for material in run.words("materials"):
         if run.text(f"{material}_model") in ("von_mises", "tresca"):
@@ -234,7 +241,7 @@ def strength_below(run, name):
     return 0.0
 
 
-def footing(run, name):
+def footing(run: Run, name: str) -> tuple[float, float] | None:
     """Width B [m] and the force on the modelled part at Nc = 1 [N/m], if `name` is pushed straight down into clay in
     2D, else None."""
     velocity = run.numbers(f"{name}_velocity", [0, 0])
@@ -247,15 +254,15 @@ def footing(run, name):
     return (2 if is_half_model(run, name) else 1) * (right - left), strength * (right - left)
 
 
-def bearing_curve(run, name):
+def bearing_curve(run: Run, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Penetration w/B and Nc of each row of the history, and the weight (advance) of the row. The force is the mean
     over the interval that ends at the row, so it belongs to the middle of the interval."""
-    width, unit_force = footing(run, name)
+    width, unit_force = footing(run, name) or (np.nan, np.nan)
     w = -run.history[f"{name}_y"] / width
     return (w[1:] + w[:-1]) / 2, run.history[f"{name}_force_y"][1:] / unit_force, np.diff(w)
 
 
-def window_means(w, nc, weight, window=WINDOW):
+def window_means(w: np.ndarray, nc: np.ndarray, weight: np.ndarray, window: float = WINDOW) -> tuple[np.ndarray, np.ndarray]:
     """Means of nc over the windows [k, k + 1] * window, k = 0, 1, ...: middles and means of those that are filled."""
     weight = np.where(w > 0, np.maximum(weight, 0), 0)
     place = np.maximum(w / window, 0).astype(int)
@@ -265,7 +272,7 @@ def window_means(w, nc, weight, window=WINDOW):
     return (full + 0.5) * window, sums[full] / total[full]
 
 
-def mean_over(w, nc, weight, lower=MEAN_FROM, upper=MEAN_TO):
+def mean_over(w: np.ndarray, nc: np.ndarray, weight: np.ndarray, lower: float = MEAN_FROM, upper: float = MEAN_TO) -> float:
     """Mean of nc over lower <= w <= upper, NaN where the run has nothing there."""
     inside = (w >= lower) & (w <= upper)
     return np.average(nc[inside], weights=weight[inside]) if weight[inside].sum() > 0 else np.nan

@@ -3,9 +3,10 @@
 import csv
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 
+from soil_mpm.problems import NoSuchResult
+from soil_mpm.results import read_body, time_of
 from soil_mpm.tree import CASES
 
 ALIGNED = np.cos(np.radians(1))  # a direction that an axis has
@@ -78,17 +79,18 @@ def toes(run, body):
 
 def particles_in(path, body):
     """Number of particles of a body in a frame, 0 where it has none."""
-    with h5py.File(path) as file:
-        return len(file[body]["position"]) if body in file and "position" in file[body] else 0
+    try:
+        return len(read_body(path, body, "position")[0])
+    except NoSuchResult:
+        return 0
 
 
 def toes_of_frames(frames, body, direction):
     """Toes from frames: percentiles by nearest rank as in the history."""
     times, furthest, percentile = [], [], []
     for path in frames:
-        with h5py.File(path) as file:
-            along = file[body]["position"][:, :len(direction)] @ direction
-            times.append(float(file.attrs["time"]))
+        along = read_body(path, body, "position")[0][:, :len(direction)] @ direction
+        times.append(time_of(path))
         rank = len(along) - len(along) // 1000 - 1
         furthest.append(along.max())
         percentile.append(np.partition(along, rank)[rank])

@@ -5,12 +5,12 @@ import numpy as np
 REACH = 1.5  # cells, from a point to the particles that count for it
 
 
-def bell(r):
+def bell(r: np.ndarray) -> np.ndarray:
     a = np.minimum(np.abs(r), 1)
     return (1 - a) ** 2 * (1 + 2 * a)
 
 
-def linear_values(offsets, weights, values):
+def linear_values(offsets: np.ndarray, weights: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Weighted fit of linear functions, at the place itself; the mean where the points do not determine a slope."""
     ones = np.column_stack([np.ones(len(offsets)), offsets])
     matrix = ones.T @ (ones * weights[:, None])
@@ -22,7 +22,7 @@ def linear_values(offsets, weights, values):
     return np.linalg.solve(matrix, ones.T @ (weights[:, None] * values))[0]
 
 
-def sample(positions, volumes, values, points, spacing):
+def sample(positions: np.ndarray, volumes: np.ndarray, values: np.ndarray, points: np.ndarray, spacing: float) -> np.ndarray:
     """values [N, k] of particles at points [n, dim], NaN where no particle is within half a cell along each axis."""
     from scipy.spatial import cKDTree
     dim = points.shape[1]

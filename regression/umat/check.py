@@ -21,11 +21,11 @@ import shutil
 import subprocess
 import sys
 
-import h5py
 import numpy as np
 
 from mpm_regression import particles, point
 from mpm_regression.folders import checkpoints, contents, differences, frames, fresh, rows, run
+from soil_mpm.results import read_frame
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -42,8 +42,7 @@ FIELDS = ("position", "velocity", "stress", "volume", "plastic_strain")
 
 def particles_of(frame, body="soil"):
     """The fields of a frame; a UMAT's first state variable is its plastic strain."""
-    with h5py.File(frame) as file:
-        found = {key: item[()].astype(float) for key, item in file[body].items()}
+    found = {key: values.astype(float) for key, values in read_frame(frame)[1][body].items()}
     if "state_1" in found:
         found["plastic_strain"] = found["state_1"]
     return found

@@ -6,7 +6,6 @@ on both faces along the direction of the shift. $Q$ and $P$ are along and across
 [pair_hertz](#elastic-balls-and-cylinders-pressed-together). The force is that of Hertz, and of the finite balls as there.
 """
 
-import h5py
 import numpy as np
 
 from mpm_regression.row import Row
@@ -20,7 +19,7 @@ RUNS = {"balls": ""}
 
 
 def positions(run, time, body):
-    with h5py.File(run.frame_near(time)) as frame:
+    with run.frame_at(time) as frame:
         return frame[body]["position"][:, :3]
 
 
@@ -43,7 +42,7 @@ def forces_at(run, time):
     """Forces on whole balls across and along the contact [N], means of three rows of the history, about the mean normal of a frame."""
     row = np.argmin(np.abs(run.history["time"] - time))
     force = 2 * np.array([run.history[f"low_high_force_{axis}"][row - 2:row + 1].mean() for axis in "xz"])
-    with h5py.File(run.frame_near(time)) as frame:
+    with run.frame_at(time) as frame:
         nodes = frame["low_high"]
         normals = nodes["contact_normal"][:, [0, 2]]
         normal = np.sum(normals * np.sum(normals * nodes["contact_force"][:, [0, 2]], axis=1)[:, None], axis=0)

@@ -9,7 +9,6 @@ shear as they are shifted, so the contact turns by up to 0.013: $Q$ and $P$ are 
 of the particles on both faces: $\\mu (x \\sqrt{x^2 - c^2} - c^2 \\mathrm{arcosh}(x/c)) / (2 R)$, $R$ that of both.
 """
 
-import h5py
 import numpy as np
 
 from mpm_regression.row import Row
@@ -44,7 +43,7 @@ EARLY = ("Contact with rigid bodies acts from a gap of 0.15 cells on, which is a
 
 
 def positions(run, time, body):
-    with h5py.File(run.frame_near(time)) as frame:
+    with run.frame_at(time) as frame:
         return frame[body]["position"][:, :2]
 
 
@@ -52,7 +51,7 @@ def forces_at(run, time):
     """Forces across and along the contact [N/m], means of three rows of the history, about the mean normal of a frame."""
     row = np.argmin(np.abs(run.history["time"] - time))
     force = np.array([run.history[f"low_high_force_{axis}"][row - 2:row + 1].mean() for axis in "xy"])
-    with h5py.File(run.frame_near(time)) as frame:
+    with run.frame_at(time) as frame:
         nodes = frame["low_high"]
         normals = nodes["contact_normal"][:, :2]
         normal = np.sum(normals * np.sum(normals * nodes["contact_force"][:, :2], axis=1)[:, None], axis=0)
