@@ -19,6 +19,7 @@ install(DIRECTORY python/soil_mpm DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm/pytho
   PATTERN "page.css" PATTERN "page.js"
   PATTERN "bench" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(PROGRAMS scripts/soil-mpm TYPE BIN)
+install(FILES scripts/site/modulefile DESTINATION ${CMAKE_INSTALL_DATADIR}/modulefiles/mpm RENAME ${PROJECT_VERSION})
 install(FILES README.md LICENSE CHANGELOG.md CITATION.cff TYPE DOC)
 
 # Prefixes of the dependencies, for find_package(mpm). HDF5 that pkg-config found needs none.

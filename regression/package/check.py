@@ -45,7 +45,8 @@ def check_content(prefix, source, build):
     installed = {str(path.relative_to(prefix)) for path in prefix.rglob("*") if path.is_file()}
     for name in ("bin/mpm", "include/mpm/simulation.hpp", "include/mpm/devices.hpp", "include/mpm/config.hpp",
                  "include/mpm/choices.hpp", "include/mpm/side_kinds.hpp", "share/mpm/inputs/footing.opts", "share/doc/mpm/LICENSE",
-                 "share/mpm/python/soil_mpm/deck.py", "bin/soil-mpm"):
+                 "share/mpm/python/soil_mpm/deck.py", "bin/soil-mpm",
+                 f"share/modulefiles/mpm/{variable(build, 'CMAKE_PROJECT_VERSION')}"):
         assert name in installed, f"{name} was not installed"
     for name in installed:
         if not name.endswith((".a", "bin/mpm")):

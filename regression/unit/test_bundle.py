@@ -8,6 +8,7 @@ usage: test_bundle.py BUILD_FOLDER
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -83,6 +84,15 @@ class Bundle(unittest.TestCase):
         """mpirun starts as many processes as asked for."""
         text = self.run_bundled("bin/mpirun", "-n", 3, "sh", "-c", "echo rank $OMPI_COMM_WORLD_RANK of $OMPI_COMM_WORLD_SIZE")
         self.assertEqual(sorted(text.split("\n"))[1:], [f"rank {rank} of 3" for rank in range(3)])
+
+    @unittest.skipUnless(shutil.which("tclsh"), "there is no tclsh")
+    def test_module(self):
+        """The modulefile names this place, by the words of Environment Modules and Lmod."""
+        (file,) = self.root.glob("share/modulefiles/mpm/*")
+        words = "proc module-whatis args {}; proc conflict args {}; proc prepend-path {name place} {puts $name=$place}"
+        text = subprocess.run(["tclsh"], input=f"{words}\nset ModulesCurrentModulefile {{{file}}}\nsource $ModulesCurrentModulefile\n",
+                              capture_output=True, text=True, check=True).stdout
+        self.assertEqual(text.split("\n")[:2], [f"PATH={self.root}/bin", f"PYTHONPATH={self.root}/python"])
 
     def test_licences(self):
         self.assertEqual(without_licence(self.root), [])
