@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/options.md from what `mpm -schema` prints.
+"""Writes docs/options.md, one long table, and docs/options/, a page for each group, from what `mpm -schema` prints.
 
 Usage: regression/options_doc.py PATH_TO_mpm [--check]   (--check: only report whether the file is up to date)
 """
@@ -7,6 +7,8 @@ import json
 import pathlib
 import subprocess
 import sys
+
+import option_pages
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = TREE / "docs" / "options.md"
@@ -60,7 +62,8 @@ def document(schema):
     for option in schema["options"]:
         if option["group"] != group:
             group = option["group"]
-            parts.append(f"\n## {group}\n\n| option | meaning | takes | default | only where | may change |\n"
+            parts.append(f"\n## {group}\n\n[With an example and related options of each](options/{option_pages.file_of(group)})\n\n"
+                         "| option | meaning | takes | default | only where | may change |\n"
                          "| --- | --- | --- | --- | --- | --- |\n")
         parts.append(row(option))
     return "".join(parts)
@@ -69,16 +72,24 @@ def document(schema):
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    schema = json.loads(subprocess.run([sys.argv[1], "-schema"], capture_output=True, text=True, check=True).stdout)
+    text = subprocess.run([sys.argv[1], "-schema"], capture_output=True, text=True, check=True).stdout
+    schema = json.loads(text)
     if not schema["options"]:
         sys.exit(f"options_doc: {sys.argv[1]} -schema lists no option")
-    text = document(schema)
+    pages = {DOCUMENT: document(schema)}
+    pages |= {option_pages.FOLDER / name: page for name, page in option_pages.Pages(text, schema).all().items()}
+    stale = sorted(set(option_pages.FOLDER.glob("*.md")) - set(pages))
     if "--check" in sys.argv[2:]:
-        if not DOCUMENT.exists() or DOCUMENT.read_text() != text:
-            sys.exit(f"options_doc: {DOCUMENT} is out of date; run regression/options_doc.py {sys.argv[1]}")
-    else:
-        DOCUMENT.write_text(text)
-        print(f"wrote {DOCUMENT}")
+        differ = [path for path, page in pages.items() if not path.exists() or path.read_text() != page]
+        if differ or stale:
+            sys.exit(f"options_doc: {', '.join(map(str, differ + stale))}: out of date; run regression/options_doc.py {sys.argv[1]}")
+        return
+    option_pages.FOLDER.mkdir(exist_ok=True)
+    for path, page in pages.items():
+        path.write_text(page)
+    for path in stale:
+        path.unlink()
+    print(f"wrote {DOCUMENT} and {len(pages) - 1} pages of {option_pages.FOLDER}")
 
 
 if __name__ == "__main__":

@@ -47,7 +47,19 @@ def slug(text, separator):
 
 def on_config(config):
     config.mdx_configs["toc"] = {"slugify": slug, "permalink": "#"}
+    config.nav = with_option_pages(config.nav, Path(config.docs_dir))
     return config
+
+
+def with_option_pages(nav, pages):
+    """The navigation with the pages of options/ below the table of all options, in the order of its groups."""
+    groups = re.findall(r"\((options/\w+\.md)\)", (pages / "options.md").read_text())
+    several = {"Options": ["options.md", *groups]}
+    for entry in nav:
+        for title, parts in entry.items() if isinstance(entry, dict) else ():
+            if "options.md" in parts:
+                entry[title] = [several if part == "options.md" else part for part in parts]
+    return nav
 
 
 def on_page_markdown(markdown, page, config, files):
