@@ -18,8 +18,8 @@ PANELS = {
     "gauge": [("depth", ["depth"], "m"), ("speed", ["speed", "mean_velocity_{axis}"], "m/s")],
     "section": [("mass flux", ["mass_flux"], "kg/s"), ("mass that has passed", ["mass"], "kg")],
 }
-RASTERS = {"max_depth": ("greatest depth (m)", "YlOrRd"), "max_speed": ("greatest speed (m/s)", "viridis"),
-           "arrival_time": ("time of arrival (s)", "viridis_r"), "final_depth": ("depth at the end (m)", "YlOrRd")}
+RASTERS = {"max_depth": ("greatest depth (m)", "magma_r"), "max_speed": ("greatest speed (m/s)", "viridis"),
+           "arrival_time": ("time of arrival (s)", "viridis_r"), "final_depth": ("depth at the end (m)", "magma_r")}
 
 
 def columns_of(run, probe, names):
