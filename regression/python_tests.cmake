@@ -43,6 +43,7 @@ mpm_python_test(docs.links "" links.py)
 mpm_python_test(docs.manual "LONG SKIPS TIMEOUT 900" manual.py)
 mpm_python_test(docs.missing "" missing.py ${mpm})
 mpm_python_test(docs.commands "TIMEOUT 900 ${threads}" commands.py ${mpm})
+mpm_python_test(docs.notebooks "TIMEOUT 900 ${threads}" notebooks.py ${mpm})
 mpm_python_test(docs.tutorials "" tutorials.py --index)
 # A test for each row of the table of tutorials, whose last column says which are long.
 file(STRINGS ${PROJECT_SOURCE_DIR}/docs/tutorials/index.md rows REGEX "^\\| \\[.*\\| (fast|long) \\|$")
