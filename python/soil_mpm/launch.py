@@ -9,6 +9,7 @@ import re
 import shlex
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -17,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence
 
 from soil_mpm.problems import NoProgram, RunFailed, WrongDeck
-from soil_mpm.tree import default_program, extra_mpi, launcher
+from soil_mpm.tree import PROGRAM, default_program, extra_mpi, launcher
 
 if TYPE_CHECKING:
     from soil_mpm.deck import Deck
@@ -65,6 +66,12 @@ def deck_file(deck: Deck) -> Iterator[Path]:
         return
     with tempfile.TemporaryDirectory(prefix="soil_mpm_") as folder:
         yield deck.write(Path(folder) / (deck._path.name if deck._path else "deck.opts"))
+
+
+def start_own_program() -> None:
+    """The command mpm of a wheel: becomes its program, with the words of the command line."""
+    path = str(PROGRAM / "bin" / "mpm")
+    os.execv(path, [path, *sys.argv[1:]])
 
 
 def output_folder(deck: Deck, out: Path | str | None) -> Path:

@@ -97,6 +97,10 @@ class Wheel(unittest.TestCase):
             self.assertTrue((out / picture).read_bytes().startswith(b"\x89PNG"))
         self.assertEqual(json.loads((out / "performance.json").read_text())["outcome"], "finished")
 
+    def test_program(self):
+        done = subprocess.run([*self.hide, self.root / "bin" / "mpm", "--version"], capture_output=True, text=True, env={"PATH": "/usr/bin:/bin"})
+        self.assertEqual((done.returncode, done.stdout[:4]), (0, "mpm "), done.stderr)
+
     def test_ranks(self):
         self.command("run", "footing_coarse", "--ranks", 2, "--no-pictures", "--out", "out/ranks", "-time_end", 0.01, "-output_frames", "off")
         self.assertEqual(json.loads((self.root / "out" / "ranks" / "performance.json").read_text())["ranks"], 2)
