@@ -105,7 +105,7 @@ class Stepper {
   virtual int patches() const = 0;              // active ones
   virtual std::size_t memory() const = 0;       // bytes on the device
   virtual std::string strategy() const = 0;     // the word of -p2g that runs
-  virtual std::string bins_report() const = 0;  // a line on -p2g_bins nodes; empty without it
+  virtual std::string bins_report() const = 0;  // bins about nodes; empty without them
   /// Line for the log on the batches of -device_memory_limit, and on their cost so far.
   virtual std::string batches_report() const = 0;
 };

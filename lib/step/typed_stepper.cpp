@@ -114,9 +114,7 @@ void TypedStepper<Space, T, Dim>::choose_bins(const std::vector<BodyInput>& bodi
 
 template <class Space, class T, int Dim>
 std::string TypedStepper<Space, T, Dim>::bins_report() const {
-  if (run_.config.p2g.bins == BinsOf::cells) return "";
-  if (run_.state.p2g.about_nodes) return "bins about nodes";
-  return "bins of cells, not about nodes: docs/method.md (Bins about nodes) has the runs that may have these";
+  return run_.state.p2g.about_nodes ? "bins about nodes" : "";
 }
 
 template <class Space, class T, int Dim>

@@ -269,12 +269,13 @@ struct StageConfig {
   std::map<std::string, int> placed_at, removed_at;
 };
 
-/// Order of the soil's particles: by their cells, or by their nearest nodes (-p2g_bins).
+/// Order of the soil's particles: by their cells, or by their nearest nodes where kernels for such bins do
+/// all that the run asks for (-p2g_bins).
 enum class BinsOf { cells, nodes };
 
 struct P2GConfig {
   P2G strategy = P2G::automatic;
-  BinsOf bins = BinsOf::cells;
+  BinsOf bins = BinsOf::nodes;
   double margin = 0.5;                  // cells, 0 < margin <= 0.5
   int mosaic_cells = 3;                 // >= 3
   std::optional<int> rebuild_interval;  // steps
