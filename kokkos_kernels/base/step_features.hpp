@@ -71,13 +71,16 @@ enum class StepWay {
   count
 };
 
+/// Features that need the sums of function 3 in a launch of their own.
+inline constexpr Features k_sum_apart{Feature::other_strategy, Feature::xpic,      Feature::apic,
+                                      Feature::saturated,      Feature::submerged, Feature::energy,
+                                      Feature::loads,          Feature::rayleigh,  Feature::contact_sites};
+
 /// Features that exclude a way of doing a step.
 constexpr Features excluding(StepWay way) {
   using F = Feature;
   switch (way) {
-    case StepWay::sums_ahead:
-      return {F::other_strategy, F::xpic,  F::apic,     F::saturated,     F::submerged,
-              F::energy,         F::loads, F::rayleigh, F::contact_sites, F::interfaces};
+    case StepWay::sums_ahead: return k_sum_apart | Features{F::interfaces};
     case StepWay::nodes_apart:
       return {F::gravity_table, F::side_table, F::columns, F::rayleigh, F::saturated};
     case StepWay::nodes_aside: return excluding(StepWay::nodes_apart) | Features{F::shear_fraction};
@@ -95,9 +98,8 @@ constexpr Features excluding(StepWay way) {
       return excluding(StepWay::one_launch) |
              Features{F::damping, F::shear_fraction, F::friction, F::acting_sides, F::pushed_mass_normals};
     case StepWay::about_nodes:
-      return excluding(StepWay::sums_ahead) | Features{F::splits,  F::correction, F::acting_sides,
-                                                       F::columns, F::revolved,   F::ranks,
-                                                       F::batches};
+      return k_sum_apart | Features{F::splits,   F::correction, F::acting_sides, F::columns,
+                                    F::revolved, F::ranks,      F::batches};
     case StepWay::count: break;
   }
   return {};

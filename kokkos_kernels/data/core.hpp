@@ -31,6 +31,7 @@ struct P2GPlan {
 struct Summed {
   bool soil = false, boundary = false, rigids = false;
   bool in_windows = false;  // those of the soil and its boundary: the windows hold them, for update_nodes
+  bool contacts = false;    // the soil's boundary, strength and cloud at nodes of contact
 };
 
 /// Update of the velocities from step to step, and their damping.

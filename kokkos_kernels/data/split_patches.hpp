@@ -12,7 +12,8 @@ namespace mpm {
 template <class Space>
 struct SplitPatches {
   struct Range {
-    int first, middle, last;  // common [first, middle), others [middle, last)
+    int first, near, middle, last;  // common [first, middle), of which [first, near) give to contact sums
+                                    // that are wanted early; others [middle, last)
   };
   Kokkos::View<int*, typename Space::memory_space> slots;
   std::vector<Range> parts;  // border and inner, or one part; none: not made yet
@@ -24,10 +25,10 @@ struct SplitPatches {
       if (of.first >= part.first && of.last <= part.last) found += of.last - of.first;
     return !parts.empty() && found == part.last - part.first;
   }
-  /// Whether there are others than common ones.
-  bool has_others() const {
+  /// Whether there are patches that are launched first, on a stream of their own.
+  bool has_early() const {
     for (const Range& of : parts)
-      if (of.middle < of.last) return true;
+      if (of.first < of.near || of.middle < of.last) return true;
     return false;
   }
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/copy.hpp"
 #include "data/state.hpp"
 
 namespace mpm {
@@ -18,6 +19,28 @@ void press_fields(State<Space, T, Dim>& s, double dt, bool in_step);
 /// same, on a stream.
 template <class Space, class T, int Dim>
 void add_interface_totals(const State<Space, T, Dim>& s, const Space& stream);
+
+/// Brings the soil's sums at the nodes back at its end where they are those of the next step already:
+/// measurements have press_fields add to them.
+template <class Space, class T, int Dim>
+class KeptSums {
+ public:
+  explicit KeptSums(const State<Space, T, Dim>& s) : s_(s) {
+    if (!s.summed.soil || !s.interfaces.in_use()) return;
+    kept_ = decltype(kept_)(Kokkos::view_alloc(Kokkos::WithoutInitializing, "mpm::kept_sums"),
+                            s.nodes.soil.extent(0));
+    copy(s.space, kept_, s.nodes.soil);
+  }
+  ~KeptSums() {
+    if (kept_.extent(0) > 0) copy(s_.space, s_.nodes.soil, kept_);
+  }
+  KeptSums(const KeptSums&) = delete;
+  KeptSums& operator=(const KeptSums&) = delete;
+
+ private:
+  const State<Space, T, Dim>& s_;
+  NodeField<Space, T, SoilTerms<Dim>::size> kept_;
+};
 
 /// Contact of a pair of bodies at a node of the mesh.
 struct InterfaceNode {

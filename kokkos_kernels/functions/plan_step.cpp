@@ -13,7 +13,7 @@ StepPlan plan_step(const ContactCore<Space, T, Dim>& s, const Features& features
   // scratch memory must hold the update and the sums.
   const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> || s.p2g.about_nodes : has_windows(s.space);
   StepPlan plan;
-  plan.sums_ahead = fit && can(StepWay::sums_ahead, features);
+  plan.sums_ahead = fit && can(s.p2g.about_nodes ? StepWay::about_nodes : StepWay::sums_ahead, features);
   plan.writes_sums = has_windows(s.space) && !features.has(Feature::other_strategy) && !batches;
   // Patches far from rigids need few registers: where they are many, a launch of their own is faster.
   plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.contact.count > 0 &&

@@ -48,8 +48,8 @@ void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
   });
 }
 
-/// The patches that are not common are few and take longer each. They are launched first, on a stream of
-/// their own, so that common patches fill the device beside them.
+/// The patches that are not common are few and take longer each, and contact waits for those near it. They
+/// are launched first, on a stream of their own, so that common patches fill the device beside them.
 template <bool Sums, class Space, class T, int Dim>
 void update_on_device(ContactCore<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside) {
   const bool about_nodes = s.p2g.about_nodes && s.plan.sums_ahead;
@@ -62,7 +62,8 @@ void update_on_device(ContactCore<Space, T, Dim>& s, double dt, const Part<Space
     if (of.first < part.first || of.last > part.last) continue;
     launch<Sums, PatchKind::any>(s, dt, s.split.slots, {aside, of.middle, of.last});
     if (about_nodes) sum_others(s, s.split.slots, {aside, of.middle, of.last});
-    launch<Sums, PatchKind::common>(s, dt, s.split.slots, {part.space, of.first, of.middle});
+    launch<Sums, PatchKind::common>(s, dt, s.split.slots, {aside, of.first, of.near});
+    launch<Sums, PatchKind::common>(s, dt, s.split.slots, {part.space, of.near, of.middle});
   }
 }
 

@@ -195,6 +195,17 @@ void fill_soil(Core<Space, T, Dim>& s, const Rows& rows) {
   fill_faces(soil, rows);
 }
 
+/// Whether particles of a cell may differ in material, or the materials in their share of F-bar. Bodies of
+/// different velocity fields have cells of their own.
+bool mixes_materials(const std::vector<MaterialInput>& materials, const std::vector<BodyInput>& bodies) {
+  for (const BodyInput& a : bodies)
+    for (const BodyInput& b : bodies)
+      if ((a.velocity_field == b.velocity_field && a.material != b.material) ||
+          materials[a.material].f_bar_share != materials[b.material].f_bar_share)
+        return true;
+  return false;
+}
+
 /// Properties of bodies and materials, and what all of the soil has in common.
 template <class Space, class T, int Dim>
 void fill_properties(Core<Space, T, Dim>& s, const std::vector<MaterialInput>& materials,
@@ -212,9 +223,7 @@ void fill_properties(Core<Space, T, Dim>& s, const std::vector<MaterialInput>& m
     stored.f_bar_share = static_cast<T>(materials[m].f_bar_share);
     return stored;
   });
-  s.f_bar.by_material = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
-    return body.material != bodies.front().material;
-  });
+  s.f_bar.by_material = mixes_materials(materials, bodies);
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   s.light_laws = soil.history.pore < 0;
   for (const BodyInput& body : bodies) {

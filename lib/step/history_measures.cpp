@@ -194,6 +194,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::unbalanced_ratio(double dt, doubl
   PetscFunctionBeginUser;
   auto& s = run_.state;
   PetscCall(sum_present_forces(s, run_.ranks.get()));
+  const KeptSums kept(s);
   if (s.interfaces.in_use()) press_fields(s, dt, false);
   if (s.at_sites.in_use) PetscCall(sum_site_forces(s, dt, run_.ranks.get()));
   const UnbalancedForces own = unbalanced_forces(s, dt);

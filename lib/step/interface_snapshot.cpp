@@ -45,6 +45,7 @@ PetscErrorCode add_interfaces(StepContext<Space, T, Dim>& run, double dt, Snapsh
   out->contacts.clear();
   if (!run.state.interfaces.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(sum_present_forces(run.state, run.ranks.get()));
+  const KeptSums kept(run.state);
   std::vector<InterfaceNode> nodes;
   PetscCallCXX(nodes = interface_nodes(run.state, dt));
   if (run.ranks) PetscCall(share_records(run.comm, &nodes));

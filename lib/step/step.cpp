@@ -41,16 +41,16 @@ struct Step {
     PetscCall(
         run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
     const bool beside = contacts_beside();
-    if (beside) PetscCall(sum_at_contacts(overlap->fork(s.space), true));
+    if (beside) PetscCall(contacts_to_nodes(s, ranks, overlap->fork(s.space), true));
     PetscCall(run(StepPhase::soil_to_nodes, [&] {
       sum_soil(s.space, !beside);  // 3 soil to nodes
       buoyancy_to_nodes(s);        //   and what water carries of it
       loads_to_nodes(s);           //   and the loads on its surface
     }));
-    if (ranks) PetscCall(ranks->add_soil(s));                 //   the sum over ranks
-    if (!beside) PetscCall(sum_at_contacts(s.space, false));  //   strength, how the soil of a field lies
-    PetscCall(flow_to_nodes(s, ranks));                       //   water in the pores
-    complete_nodes(s.space);                                  //   particles that are alone
+    if (ranks) PetscCall(ranks->add_soil(s));                      //   the sum over ranks
+    if (!beside) PetscCall(contacts_to_nodes(s, ranks, s.space));  //   strength, how the soil of a field lies
+    PetscCall(flow_to_nodes(s, ranks));                            //   water in the pores
+    complete_nodes(s.space);                                       //   particles that are alone
     if (beside) overlap->join(s.space);
     if (rayleigh)
       PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
@@ -79,14 +79,17 @@ struct Step {
     const Space& stream = parted ? overlap->fork(s.space) : joined();
     PetscCall(run(StepPhase::reset, [&] { reset(); }));
     PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    const bool beside = contacts_beside() && !s.summed.contacts;
+    if (beside) PetscCall(contacts_to_nodes(s, ranks, overlap->fork(s.space)));
     PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(stream); }));
     if (ranks) PetscCall(ranks->add_soil(s, stream));
-    PetscCall(sum_at_contacts(stream, false));
+    if (!beside) PetscCall(contacts_to_nodes(s, ranks, stream));
     complete_nodes(stream);
+    if (beside) overlap->join(s.space);
     PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
     if (parted && !ranks) move_rigids_ahead(stream);
-    PetscCall(run(StepPhase::particles, [&] { update_patches_and(ends); }));
+    PetscCall(run(StepPhase::particles, [&] { return update_patches_and(ends); }));
     if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -101,7 +104,7 @@ struct Step {
     PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
     PetscCall(run(StepPhase::soil_to_nodes, [&] { return send_soil(); }));
     PetscCall(ranks->add_soil(s, stream));
-    PetscCall(sum_at_contacts(s.space, false));
+    PetscCall(contacts_to_nodes(s, ranks, s.space));
     complete_nodes(stream);
     PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
@@ -152,8 +155,10 @@ struct Step {
   }
 
   /// Whether nodes near rigids may go to the overlap stream. Functions that are timed have the device for
-  /// themselves.
-  bool has_stream() const { return overlap && s.plan.nodes_aside && !timers.sampling(); }
+  /// themselves, and contact of deformable bodies is for all nodes at once.
+  bool has_stream() const {
+    return overlap && s.plan.nodes_aside && !s.interfaces.in_use() && !timers.sampling();
+  }
   /// The state's own stream, behind all work of the overlap stream.
   const Space& joined() const {
     if (overlap) overlap->join(s.space);
@@ -172,15 +177,6 @@ struct Step {
   void sum_soil(const Space& stream, bool boundary = true) const {
     if (ranks) finish_sums(s);
     soil_to_nodes(s, stream, boundary);
-  }
-  /// Sums that contact needs in some runs: the soil's strength, how the soil of a field lies round a node,
-  /// and the soil's boundary where it is not summed with the soil.
-  PetscErrorCode sum_at_contacts(const Space& stream, bool boundary) const {
-    PetscFunctionBeginUser;
-    if (boundary) boundary_to_nodes(s, stream);
-    PetscCall(strength_to_nodes(s, ranks, stream));
-    PetscCall(cloud_to_nodes(s, ranks, stream));
-    PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Marks, in runs that need it, the particles that are alone until a rebuild, and the patches that go to
   /// the overlap stream.
@@ -232,19 +228,31 @@ struct Step {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 5 of a part of the soil, or of all of it. The overlap stream takes the patches that are not
-  /// common.
+  /// common, and those near contact, of which it then sums what the contact of the next step needs.
   template <class... Some>
-  void update_patches(const Some&... part) const {
+  PetscErrorCode update_patches(const Some&... part) const {
+    PetscFunctionBeginUser;
     if (s.p2g.about_nodes && s.f_bar.fraction > 0) sum_dilatations(s);
-    const bool aside = overlap && s.split.has_others() && !timers.sampling();
-    update_particles(s, dt, part..., aside ? overlap->fork(s.space) : s.space);
+    const bool aside = overlap && s.split.has_early() && !timers.sampling();
+    const Space& stream = aside ? overlap->fork(s.space) : s.space;
+    update_particles(s, dt, part..., stream);
+    if (aside && contacts_beside() && s.summed.soil) {
+      PetscCall(contacts_to_nodes(s, ranks, stream, true));
+      s.summed.boundary = s.summed.contacts = true;
+    }
     if (aside) overlap->join(s.space);
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 5, and with the same launch the end of the step where `ends`.
-  void update_patches_and(bool ends) const {
+  PetscErrorCode update_patches_and(bool ends) const {
+    PetscFunctionBeginUser;
     if constexpr (is_device<Space>)
-      if (ends) return update_and_end(s, dt);
-    update_patches();
+      if (ends) {
+        update_and_end(s, dt);
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
+    PetscCall(update_patches());
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscErrorCode update_soil() const {
     PetscFunctionBeginUser;
@@ -253,7 +261,7 @@ struct Step {
     if (s.batches.in_use())
       update_by_batches(s, dt);
     else
-      update_patches();
+      PetscCall(update_patches());
     if (s.flow.in_use()) weigh_saturated(s, s.control);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -300,7 +308,7 @@ struct Step {
     const Part<Space> border = ranks->border(s);
     update_particles(s, dt, border, border.space);
     PetscCall(ranks->send_ahead(s));
-    update_patches(ranks->inner(s));
+    PetscCall(update_patches(ranks->inner(s)));
     ranks->join(s);
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -29,6 +29,14 @@ void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
 
 namespace {
 
+/// Sets the boundary's sums to zero where function 5 has left those of the soil alone, and nodes of
+/// interfaces keep their last ones.
+template <class Space, class T, int Dim>
+void begin_boundary(const State<Space, T, Dim>& s, const Space& stream) {
+  if (s.summed.soil && !s.summed.boundary && s.interfaces.in_use() && !s.plan.writes_sums)
+    Kokkos::deep_copy(stream, s.nodes.boundary, T(0));
+}
+
 template <class Space, class T, int Dim>
 void boundary_of(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
                  const Space& stream) {
@@ -57,6 +65,7 @@ void mass_and_force_of(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>&
 
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream, bool boundary) {
+  if (boundary) begin_boundary(s, stream);
   for_all_soil(s, [&](const auto& set) {
     mass_and_force_of(s, set.points, set.bins, stream);
     if (boundary) boundary_of(s, set.points, set.bins, stream);
@@ -67,11 +76,6 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
   const Bins<Space> bins = bins_of(s.soil.bins, part);
   mass_and_force_of(s, s.soil.points, bins, part.space);
   boundary_of(s, s.soil.points, bins, part.space);
-}
-
-template <class Space, class T, int Dim>
-void boundary_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
-  for_all_soil(s, [&](const auto& set) { boundary_of(s, set.points, set.bins, stream); });
 }
 
 template <class Space, class T, int Dim>
@@ -129,6 +133,8 @@ PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+namespace {
+
 template <class Space, class T, int Dim>
 PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
                                  const Space& stream) {
@@ -159,6 +165,22 @@ PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, D
     });
   });
   if (ranks) PetscCall(ranks->add_field(s, s.nodes.cloud, When::in_step, s.contact.place.data()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+PetscErrorCode contacts_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
+                                 const Space& stream, bool boundary) {
+  PetscFunctionBeginUser;
+  if (s.summed.contacts) PetscFunctionReturn(PETSC_SUCCESS);
+  if (boundary) {
+    begin_boundary(s, stream);
+    for_all_soil(s, [&](const auto& set) { boundary_of(s, set.points, set.bins, stream); });
+  }
+  PetscCall(strength_to_nodes(s, ranks, stream));
+  PetscCall(cloud_to_nodes(s, ranks, stream));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,8 +221,7 @@ PetscErrorCode sum_present_forces(State<Space, T, Dim>& s, Decomposition<Space, 
   buoyancy_to_nodes(s);
   loads_to_nodes(s);
   if (ranks) PetscCall(ranks->add_present_soil(s));
-  PetscCall(strength_to_nodes(s, ranks, s.space));
-  PetscCall(cloud_to_nodes(s, ranks, s.space));
+  PetscCall(contacts_to_nodes(s, ranks, s.space));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,15 +248,12 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
   template void rigids_to_nodes(const State<Space, T, Dim>&, const Space&);                         \
   template void soil_to_nodes(const State<Space, T, Dim>&, const Space&, bool);                     \
   template void soil_to_nodes(const State<Space, T, Dim>&, const Part<Space>&);                     \
-  template void boundary_to_nodes(const State<Space, T, Dim>&, const Space&);                       \
   template void buoyancy_to_nodes(State<Space, T, Dim>&);                                           \
   template void loads_to_nodes(State<Space, T, Dim>&);                                              \
   template PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>&, Rayleigh<Space, T, Dim>&,        \
                                             Decomposition<Space, T, Dim>*);                         \
-  template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*,   \
-                                            const Space&);                                          \
-  template PetscErrorCode cloud_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*,      \
-                                         const Space&);                                             \
+  template PetscErrorCode contacts_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*,   \
+                                            const Space&, bool);                                    \
   template PetscErrorCode flow_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);      \
   template PetscErrorCode sum_present_forces(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
   template void sum_present_soil(State<Space, T, Dim>&);                                            \

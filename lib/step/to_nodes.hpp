@@ -35,20 +35,12 @@ template <class Space, class T, int Dim>
 PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim>& by,
                                  Decomposition<Space, T, Dim>* ranks);
 
-/// The soil's boundary where a contact needs it; it may be there already.
+/// What contact needs in some runs of the soil at its nodes: the soil's strength, how the soil of each of
+/// several velocity fields lies round a node, and, where `boundary`, the soil's boundary. They may be there
+/// already. ranks: null where this is the only one; else `stream` is the state's own.
 template <class Space, class T, int Dim>
-void boundary_to_nodes(const State<Space, T, Dim>& s, const Space& stream);
-
-/// The soil's strength at the nodes of contact, where a contact asks for it. ranks: null where this is the
-/// only one; else `stream` is the state's own.
-template <class Space, class T, int Dim>
-PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
-                                 const Space& stream);
-
-/// How the soil lies round the nodes that several velocity fields share, where bodies have such, likewise.
-template <class Space, class T, int Dim>
-PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
-                              const Space& stream);
+PetscErrorCode contacts_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
+                                 const Space& stream, bool boundary = false);
 
 /// Sums FlowTerms at the nodes, of all ranks, where water flows in pores.
 template <class Space, class T, int Dim>

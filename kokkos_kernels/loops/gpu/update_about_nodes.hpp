@@ -47,9 +47,8 @@ struct NodeImages {
 };
 
 /// A team moves the particles of a patch, whose laws are of the list Laws, and adds them where they now are
-/// to the nodes for the next step. The patch may lie at lower walls. No upper side is near, none of its
-/// particles is alone, and no boundary of its soil is asked for. HasMeans: with F-bar, whose sums over cells
-/// are there.
+/// to the nodes for the next step. The patch may lie at lower walls. No upper side is near, and none of its
+/// particles is alone. HasMeans: with F-bar, whose sums over cells are there.
 template <class Space, class T, class Laws, bool HasMeans>
 struct UpdateAboutNodes {
   using Update = UpdateParticles<Space, T, 3, true, PatchKind::common, Laws>;
