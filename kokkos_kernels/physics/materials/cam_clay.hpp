@@ -162,11 +162,13 @@ struct CamClay {
     s = rotated(s, by.spin);
     R square = 0;
     for (int k = 0; k < sym_size<Dim>; ++k) square += (k < 3 ? 1 : 2) * by.strain[k] * by.strain[k];
-    const R wanted = Kokkos::ceil(Kokkos::sqrt(square) * T(1 / k_largest_increment));
-    const Truth<R> too_many = !(wanted <= T(k_most_increments));
-    const R parts = select(too_many, R(k_most_increments), Kokkos::fmax(R(1), wanted));
+    R parts = 1;
+    Truth<R> too_many = !(square <= T(k_largest_increment * k_largest_increment));
     SymTensor<R, Dim> part = by.strain;
-    if (any_of(parts > 1)) {
+    if (any_of(too_many)) {
+      const R wanted = Kokkos::ceil(Kokkos::sqrt(square) * T(1 / k_largest_increment));
+      too_many = !(wanted <= T(k_most_increments));
+      parts = select(too_many, R(k_most_increments), Kokkos::fmax(R(1), wanted));
       const R share = 1 / parts;
       for (int k = 0; k < sym_size<Dim>; ++k) part[k] *= share;
     }
@@ -232,9 +234,12 @@ struct CamClay {
       state[preconsolidation] = select(too_small, R(least), state[preconsolidation]);
       state[preconsolidation_rest] = select(too_small, R(0), state[preconsolidation_rest]);
     }
-    const R softest = a * least;  // Pa, modulus at no pressure; 0 once the law has failed
-    const R parts = select(softest > 0, Kokkos::fmax(R(0), -left) / select(softest > 0, softest, R(1)), R(0));
-    state[parted] = select(takes_part, select(gap > 0, Kokkos::fmax(opens, R(0)), R(0)) + parts, gap);
+    if (any_of((gap > 0) | !(left >= 0))) {
+      const R softest = a * least;  // Pa, modulus at no pressure; 0 once the law has failed
+      const R parts =
+          select(softest > 0, Kokkos::fmax(R(0), -left) / select(softest > 0, softest, R(1)), R(0));
+      state[parted] = select(takes_part, select(gap > 0, Kokkos::fmax(opens, R(0)), R(0)) + parts, gap);
+    }
     for (int k = 0; k < sym_size<Dim>; ++k) s[k] = select(takes_part, select(presses, next[k], R(0)), s[k]);
   }
 };

@@ -44,8 +44,9 @@ struct PowerElastic {
   std::array<double, 0> initial_state(const ParticleStart&) const { return {}; }
 
   /// K [Pa] at X = P + pressure_offset [Pa].
-  MPM_CALLED_FUNCTION T bulk_modulus_at(T x) const {
-    return factor * Kokkos::pow(Kokkos::fmax(x, pressure_min), exponent);
+  KOKKOS_FUNCTION T bulk_modulus_at(T x) const {
+    const T above = Kokkos::fmax(x, pressure_min);
+    return factor * (exponent == T(0.5) ? Kokkos::sqrt(above) : power_of(above));
   }
   /// K + 4 G / 3 [Pa], which gives the speed of the fastest wave (Eq. 14).
   template <int Dim>
@@ -79,8 +80,17 @@ struct PowerElastic {
   KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, LawState<T, 0>&, const Increment<T, T, Dim>& by) const {
     s = rotated(s, by.spin);
     const T dilatation = by.strain[0] + by.strain[1] + by.strain[2];
-    const T before = pressure_offset - mean_of(s), grown = growth(before, -dilatation);
-    add_shear(s, by.strain, dilatation, shear_ratio * bulk_modulus_at(before + grown / 2));
+    const T before = pressure_offset - mean_of(s), modulus = bulk_modulus_at(before);
+    const T change = modulus * -dilatation, inverse = 1 / before, relative = change * inverse;
+    T grown, middle;  // of X; K half way
+    if (before >= pressure_min && before + change >= pressure_min && Kokkos::fabs(relative) < k_small) {
+      grown = change * power_series(1 - exponent, relative);
+      middle = modulus * modulus_series(grown * inverse / 2);
+    } else {
+      grown = growth(before, -dilatation);
+      middle = bulk_modulus_at(before + grown / 2);
+    }
+    add_shear(s, by.strain, dilatation, shear_ratio * middle);
     for (int d = 0; d < 3; ++d) s[d] -= grown;
   }
 
@@ -94,8 +104,10 @@ struct PowerElastic {
       const T rest = compression - (least - x) / slope;
       return (least - x) + power_growth(least, slope, rest);
     }
-    // the strain at which X falls to pressure_min
     const T modulus = bulk_modulus_at(x);
+    // The modulus only falls with X, so that X falls by no more than at the modulus of now.
+    if (x + modulus * compression >= least) return power_growth(x, modulus, compression);
+    // the strain at which X falls to pressure_min
     const T rest = 1 - exponent, ratio = Kokkos::log(x / least);
     const T span = x / modulus * (rest == 0 ? ratio : -Kokkos::expm1(-rest * ratio) / rest);
     if (compression >= -span) return power_growth(x, modulus, compression);
@@ -103,6 +115,21 @@ struct PowerElastic {
   }
 
  private:
+  static constexpr T k_small = T(0.01);  // of changes for which seven terms of a series have all digits
+
+  MPM_CALLED_FUNCTION T power_of(T x) const { return Kokkos::exp(exponent * Kokkos::log(x)); }
+  /// ((1 + r c)^(1/r) - 1) / c for a small c, 0 <= r <= 1: terms c^k/(k + 1)! (1 - r) ... (1 - k r).
+  KOKKOS_INLINE_FUNCTION static T power_series(T r, T c) {
+    T sum = 1;
+    for (int k = 6; k > 0; --k) sum = 1 + (1 - k * r) * T(1.0 / (k + 1)) * c * sum;
+    return sum;
+  }
+  /// (1 + d)^n for a small d, with n the exponent: terms d^k/k! n ... (n - k + 1).
+  KOKKOS_INLINE_FUNCTION T modulus_series(T d) const {
+    T sum = 1;
+    for (int k = 7; k > 0; --k) sum = 1 + (exponent - (k - 1)) * T(1.0 / k) * d * sum;
+    return sum;
+  }
   /// Growth of X [Pa] above pressure_min from x, where K is `modulus` [Pa]: X' = (X^(1-n) + (1-n) c dv)^
   /// (1/(1-n)), n = 1: X exp(c dv). A step changes X by a factor of at most e^20,
   /// so that what is finite stays finite.

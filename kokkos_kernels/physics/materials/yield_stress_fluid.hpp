@@ -110,6 +110,14 @@ struct YieldStressFluid {
     if (consistency == 0) return {0, beyond / shear_modulus};
     const bool thins = exponent < 1;
     const T p = thins ? 1 / exponent : exponent;
+    if (p == 2) {
+      const T of_unknown = thins ? consistency : stiffness, of_other = thins ? stiffness : consistency,
+              a = (of_other / of_unknown) * (beyond / of_unknown);
+      if (a < T(1e30)) {
+        const T y = 2 / (1 + Kokkos::sqrt(1 + 4 * a)), rest = a * y * y;
+        return {beyond * (thins ? y : rest), beyond * (thins ? rest : y) / shear_modulus};
+      }
+    }
     // a = G dt beyond^(p - 1) / k^p, or k beyond^(p - 1) / (G dt)^p
     const T log_stiffness = Kokkos::log(stiffness), log_beyond = Kokkos::log(beyond);
     const T log_a = (p - 1) * log_beyond +
