@@ -1,6 +1,6 @@
+#include "functions/launch_update.hpp"
 #include "functions/update_about_nodes.hpp"
 #include "loops/cpu/host_update.hpp"
-#include "loops/gpu/patch_update.hpp"
 
 namespace mpm {
 namespace {
@@ -8,25 +8,6 @@ namespace {
 template <class Space>
 using Slots = Kokkos::View<int*, typename Space::memory_space>;
 
-template <bool Sums, PatchKind kind, class Laws, ParticleDomain domain, class Space, class T, int Dim>
-void launch_for(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
-                const Part<Space>& part) {
-  using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws, domain>;
-  const int teams = part.last - part.first;
-  if (teams == 0) return;
-  Kokkos::parallel_for("mpm::update_particles",
-                       light(typename Update::Team(part.space, teams, Update::threads)
-                                 .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
-                       update_of<Update>(s, dt, slots, part.first));
-}
-/// Launches the kernel of the one law that all soil has, if it has one of its own.
-template <bool Sums, PatchKind kind, template <class> class... Models, class Space, class T, int Dim>
-bool launch_heavy(ModelList<Models...>, ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
-                  const Part<Space>& part) {
-  return ((s.law == model_index_in<Models>(Materials{}) &&
-           (launch_for<Sums, kind, ModelList<Models>, ParticleDomain::fixed>(s, dt, slots, part), true)) ||
-          ...);
-}
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
   with_domain(s.soil.points, [&](auto domain) {
@@ -36,14 +17,14 @@ void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
       if (s.p2g.about_nodes && s.plan.sums_ahead) return update_about_nodes(s, dt, slots, part);
     }
     if constexpr (domain() == ParticleDomain::ring) {
-      launch_for<Sums, PatchKind::any, Materials, domain()>(s, dt, slots, part);
+      launch_update<Sums, PatchKind::any, Materials, domain()>(s, dt, slots, part);
     } else {
-      if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
-      // Domains that stretch have no kernels of one heavy law, which take long to compile.
+      if (light_kernels_do(s)) return launch_update<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
+      // Domains that stretch have no kernels of one law, which take long to compile.
       if constexpr (kind == PatchKind::common && domain() == ParticleDomain::fixed) {
-        if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
+        if (launch_single_law(s, dt, Sums, slots, part)) return;
       }
-      launch_for<Sums, kind, Materials, domain()>(s, dt, slots, part);
+      launch_update<Sums, kind, Materials, domain()>(s, dt, slots, part);
     }
   });
 }

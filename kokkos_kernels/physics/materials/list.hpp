@@ -31,9 +31,13 @@ using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, Drucke
 /// others cost them nothing (docs/development/gpu_laws.md).
 using LightMaterials = ModelList<LinearElastic, VonMises>;
 
-/// Laws whose update takes many registers and instructions. A GPU has a kernel for each of them alone, for
-/// common patches of soil that has no other law.
+/// Laws whose update takes many registers and instructions.
 using HeavyMaterials = ModelList<Tresca, MohrCoulomb, CamClay, SofteningClay>;
+
+/// Laws for which a GPU has a kernel of their own, for common patches of soil that has no other law. Kernels
+/// that do not sum ahead are for HeavyMaterials alone.
+using SingleMaterials = ModelList<Tresca, MohrCoulomb, DruckerPrager, MuI, Newtonian, YieldStressFluid,
+                                  PowerElastic, J2Hardening, CamClay, SofteningClay>;
 
 /// Index in Materials of a model.
 template <template <class> class Model, template <class> class... Models>
