@@ -22,7 +22,7 @@ std::size_t memory_of(const ContactCore<Space, T, Dim>& s, const NodeUses& uses)
   add(s.nodes.impulse), add(s.nodes.rigid), add(s.contact.place);
   for_each_table(s.vertices, add);
   add(s.strays.alone), add(s.split.slots);
-  add(s.cell_means.corner), add(s.cell_means.sums);
+  add(s.cell_means.place), add(s.cell_means.first), add(s.cell_means.sums);
   add(s.at_sites.sites), add(s.at_sites.gaps), add(s.at_sites.sums);
   const auto& list = s.at_sites.list;
   add(list.marks), add(list.open), add(list.first), add(list.node), add(list.group), add(list.pair);

@@ -1,8 +1,8 @@
 #include "functions/update_about_nodes.hpp"
 
 #include "base/copy.hpp"
+#include "functions/launch_about_nodes.hpp"
 #include "loops/gpu/cell_dilatation.hpp"
-#include "loops/gpu/update_about_nodes.hpp"
 #include "loops/interpolation.hpp"
 
 namespace mpm {
@@ -10,12 +10,6 @@ namespace {
 
 template <class Space>
 using Slots = Kokkos::View<int*, typename Space::memory_space>;
-
-template <bool HasMeans, class Space, class T>
-auto update_of_common(const ContactCore<Space, T, 3>& s, double dt, const Slots<Space>& slots, int first) {
-  using Update = UpdateAboutNodes<Space, T, LightMaterials, HasMeans>;
-  return Update{update_of<typename Update::Update>(s, dt, slots, first), s.cell_means};
-}
 
 /// Calls f(first, middle, last) for the parts of the slots that hold soil: common ones, and others.
 template <class Space, class T, class F>
@@ -82,7 +76,7 @@ struct AddToCells {
       rate = dilatation_from_nodes<ParticleDomain::fixed, T, 3>(nodes, coord_of<3>(soil.cell(p)), a,
                                                                 all.by.inv_spacing);
     });
-    Vector<T, 2>& sum = means.sums(cell_of_corner(all.neighbours, soil.cell(p), means.corner(p)));
+    Vector<T, 2>& sum = means.sums(cell_of_corner(all.neighbours, soil.cell(p), means.place(p).corner()));
     Kokkos::atomic_add(&sum[0], volume);
     Kokkos::atomic_add(&sum[1], volume * rate);
   }
@@ -97,7 +91,7 @@ struct TakeMean {
   Dilatations<Space, T> dilatation;
 
   KOKKOS_INLINE_FUNCTION void operator()(int p) const {
-    const Vector<T, 2> sum = means.sums(cell_of_corner(neighbours, cell(p), means.corner(p)));
+    const Vector<T, 2> sum = means.sums(cell_of_corner(neighbours, cell(p), means.place(p).corner()));
     dilatation(p) = CellMean<T>{sum[0], sum[1]}.value();
   }
 };
@@ -109,12 +103,10 @@ void update_about_nodes([[maybe_unused]] const ContactCore<Space, T, Dim>& s, [[
                         [[maybe_unused]] const Kokkos::View<int*, typename Space::memory_space>& slots,
                         [[maybe_unused]] const Part<Space>& part) {
   if constexpr (is_device<Space> && Dim == 3) {
-    const int teams = part.last - part.first;
-    if (teams == 0) return;
-    if (s.f_bar.fraction > 0)
-      launch_large_teams(part.space, teams, update_of_common<true>(s, dt, slots, part.first));
-    else
-      launch_large_teams(part.space, teams, update_of_common<false>(s, dt, slots, part.first));
+    if (part.first == part.last) return;
+    if (!light_kernels_do(s)) return launch_laws_about_nodes(s, dt, slots, part);
+    if (s.f_bar.fraction > 0) return launch_about_nodes<LightMaterials, true>(s, dt, slots, part);
+    launch_about_nodes<LightMaterials, false>(s, dt, slots, part);
   }
 }
 
@@ -138,7 +130,8 @@ void sum_dilatations([[maybe_unused]] const ContactCore<Space, T, Dim>& s) {
     for_each_part(s, [&](const auto& slots, int first, int middle, int last) {
       using Sum = CellDilatations<Space, T, LightMaterials>;
       if (first < middle)
-        launch_large_teams(s.space, middle - first, Sum{update_of_common<true>(s, 0, slots, first)});
+        launch_large_teams(s.space, middle - first,
+                           Sum{update_about_nodes_of<LightMaterials, true>(s, 0, slots, first)});
       using Add = AddToCells<Space, T>;
       using Team = typename Add::Update::Team;
       if (middle < last)

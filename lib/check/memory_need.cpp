@@ -78,7 +78,7 @@ double bytes_of_particle(const Config& config) {
   if (!config.loads.empty()) bytes += k_grown * 3 * sizeof(Vector<T, Dim>);  // SurfaceLoads
   if (config.output.energy) bytes += k_grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));
   if (config.velocity_update == VelocityUpdate::xpic) bytes += k_grown * sizeof(Vector<T, Dim>);
-  if (may_have_cell_means<Space, Dim>(config)) bytes += k_grown * sizeof(std::uint8_t);
+  if (may_have_cell_means<Space, Dim>(config)) bytes += k_grown * sizeof(CellPlace);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
     const double reach = 2 * (1.25 + config.p2g.margin);
@@ -94,7 +94,9 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
   const double soil = need.particles * bytes_of_particle<Space, T, Dim>(config);
   need.nodes = k_ring * cells * bytes_of_node(Nodes<Space, T, Dim>{}, uses_of_nodes(config));
-  if (may_have_cell_means<Space, Dim>(config)) need.nodes += k_ring * cells * k_grown * 2 * sizeof(T);
+  if (may_have_cell_means<Space, Dim>(config))
+    need.nodes += k_ring * cells * k_grown *
+                  (2 * sizeof(T) + sizeof(int) * double(CellWindow::cells + 1) / Patch<3>::cells);
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy) == P2G::tile)
     need.nodes += cells * k_window_bytes<T, Dim> *
                   (1 + (water_flows(config) ? double(FlowTerms<Dim>::size) / SoilTerms<Dim>::size : 0));

@@ -198,6 +198,34 @@ TEST_CASE("in bins about nodes a particle is where it was, by its nearest node",
   });
 }
 
+TEST_CASE("the particles of a patch have places in the order of their cells", "[bins]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    if constexpr (B::dim == 3) {
+      Cloud cloud = block(Wall::roller, 3);
+      cloud.f_bar_fraction = 0.9, cloud.p2g.about_nodes = true;
+      const auto s = state_of<B>(cloud, P2G::tile);
+      const auto x = on_host(s.soil.points.coordinate);
+      const auto bin = on_host(s.soil.points.cell), begin = on_host(s.soil.bins.begin);
+      const auto place = on_host(s.cell_means.place);
+      const auto first = on_host(s.cell_means.first);
+      std::vector<int> taken(s.soil.points.count);
+      bool in_cell = true;
+      for (int p = 0; p < s.soil.points.count; ++p) {
+        const int slot = bin(p) / Patch<3>::cells, at = slot * (CellWindow::cells + 1),
+                  c = CellWindow::cell_of(place(p).bin(), place(p).corner()), n = place(p).number();
+        in_cell = in_cell && place(p).bin() == bin(p) % Patch<3>::cells && first(at + c) <= n &&
+                  n < first(at + c + 1);
+        for (int d = 0; d < 3; ++d) in_cell = in_cell && (place(p).corner() >> d & 1) == (x(p)[d] < 0);
+        ++taken[begin(slot * Patch<3>::cells) + n];
+      }
+      INFO(build.name());
+      CHECK(in_cell);
+      CHECK(std::count(taken.begin(), taken.end(), 1) == s.soil.points.count);
+    }
+  });
+}
+
 TEST_CASE("steps with bins about nodes are those with bins of cells", "[step]") {
   for (Wall wall : {Wall::roller, Wall::fixed, Wall::free})
     for (int per_cell : {2, 3}) {

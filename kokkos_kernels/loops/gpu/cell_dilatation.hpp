@@ -9,91 +9,92 @@
 namespace mpm {
 
 /// A team sums the volume of the particles of a patch and volume times dilatation rate over the cells, where
-/// the kernel UpdateAboutNodes takes the patch.
+/// the kernel UpdateAboutNodes takes the patch. The values of a cell's particles lie side by side on a stage,
+/// and a thread adds them.
 template <class Space, class T, class Laws>
 struct CellDilatations {
   using Update = UpdateAboutNodes<Space, T, Laws, true>;
   using Window = NodeWindow<T>;
   using Pair = typename Window::Pair;
-  static constexpr int threads = 128, teams = sizeof(T) == sizeof(float) ? 8 : 4, bins = Patch<3>::cells;
+  static constexpr int threads = 128, teams = sizeof(T) == sizeof(float) ? 8 : 6, bins = Patch<3>::cells;
   static constexpr int cells = CellWindow::cells;
-  /// Particles that a round has room for; the bins of most patches take one.
+  static_assert(cells <= threads);
+  /// Particles that a round has room for; most patches take one.
   static constexpr int room = 576;
 
   Update update;
 
-  static constexpr std::size_t pairs_at() { return (Window::bytes() + 15) / 16 * 16; }
-  static constexpr std::size_t begin_at() { return pairs_at() + room * sizeof(Pair); }
-  static constexpr std::size_t corners_at() { return begin_at() + (bins + 1) * sizeof(int); }
-  static constexpr std::size_t bytes() { return corners_at() + room; }
+  static constexpr std::size_t bytes() { return Window::bytes() + room * sizeof(Pair); }
 
   KOKKOS_INLINE_FUNCTION void operator()(const LargeTeam& team, unsigned char* scratch, int index) const {
     const auto& all = update.all;
-    const int paused = all.control().paused, slot = all.slots(all.first + index);
+    const int paused = all.control().paused, slot = all.slots(all.first + index), rank = team.rank;
     if (paused) return;
-    int* const begin = reinterpret_cast<int*>(scratch + begin_at());
-    for (int b = team.rank; b <= bins; b += threads) begin[b] = all.begin(slot * bins + b);
+    const int begin = all.begin(slot * bins), end = all.begin((slot + 1) * bins);
+    Sample next = load(begin + rank, end);
+    const Cell cell = cell_at(slot, rank);
     const Window window(scratch);
+    Pair* const stage = reinterpret_cast<Pair*>(scratch + Window::bytes());
     const NodeImages<T> images{all.grid, all.origin(slot), all.reach(all.origin(slot))};
-    update.template load_window<threads>(team, slot, images, window);
-    for (int bin = 0; bin < bins;) {
-      const int first = begin[bin], rank = team.rank;
-      int last_bin = bins;
-      if (begin[bins] - first > room)
-        last_bin = bin + team.count(rank >= bin && rank < bins && begin[rank + 1] - first <= room);
-      for (int p = first + rank; p < begin[last_bin]; p += threads) put(scratch, window, slot, p, p - first);
+    update.template load_window<threads>(team, slot, images, window, nullptr);
+    Pair sum{};
+    for (int first = 0; first < end - begin; first += room) {
+      if (first > 0) next = load(begin + rank, end);
+      for (int p = begin + rank; p < end; p += threads) {
+        const Sample now = next;
+        next = load(p + threads, end);
+        const int n = now.place.number() - first;
+        if (n >= 0 && n < room) stage[staged(n)] = pair_of(window, now);
+      }
       team.barrier();
-      for (int c = rank; c < cells; c += threads) give(scratch, begin, slot, c, bin, last_bin);
-      if (last_bin < bins) team.barrier();
-      bin = last_bin;
+      const int behind = cell.last - first < room ? cell.last - first : room;
+      MPM_ROLLED
+      for (int n = cell.first > first ? cell.first - first : 0; n < behind; ++n)
+        for (int k = 0; k < 2; ++k) sum.c[k] += stage[staged(n)].c[k];
+      if (first + room < end - begin) team.barrier();
     }
+    if (cell.last <= cell.first) return;
+    Vector<T, 2>& of_cell = update.means.sums(cell.number);
+    Kokkos::atomic_add(&of_cell[0], sum.c[0]);
+    Kokkos::atomic_add(&of_cell[1], sum.c[1] * all.by.inv_spacing);
   }
 
  private:
-  /// Puts volume, and volume times dilatation rate, of particle p on the stage as number n.
-  KOKKOS_INLINE_FUNCTION void put(unsigned char* scratch, const Window& window, int slot, int p,
-                                  int n) const {
+  /// Values of a particle.
+  struct Sample {
+    Vector<T, 3> x;
+    T volume;
+    CellPlace place;
+    int body;
+  };
+  /// A cell that the patch's particles may be in: its number, and its particles in the patch's order of them.
+  struct Cell {
+    int number, first, last;
+  };
+
+  /// Place on the stage: the first particles of eight cells of eight are in different banks.
+  KOKKOS_INLINE_FUNCTION static int staged(int n) { return n ^ (n >> 3 & 7); }
+
+  KOKKOS_INLINE_FUNCTION Sample load(int p, int end) const {
+    if (p >= end) return {};
     const auto& all = update.all;
     const auto& soil = all.source.points;
-    const BodyProperties<T> body = soil.bodies(all.one_body ? 0 : soil.body(p));
-    const Vector<T, 3> x = soil.coordinate(p);
-    NearestWeights<T> a[3];
-    for (int d = 0; d < 3; ++d) a[d] = nearest_weights(x[d], body.half_length);
-    const T rate = window.dilatation(Window::lowest_of(soil.cell(p) - slot * bins), a) * all.by.inv_spacing,
-            volume = soil.volume(p);
-    reinterpret_cast<Pair*>(scratch + pairs_at())[n] = {volume, volume * rate};
-    scratch[corners_at() + n] = update.means.corner(p);
+    return {soil.coordinate(p), soil.volume(p), update.means.place(p), all.one_body ? 0 : soil.body(p)};
   }
-
-  /// Adds cell c of those that the patch's particles may be in, from the bins [first_bin, last_bin) of its
-  /// nodes.
-  KOKKOS_INLINE_FUNCTION void give(const unsigned char* scratch, const int* begin, int slot, int c,
-                                   int first_bin, int last_bin) const {
-    const Coord<3> cell = CellWindow::coord(c);
-    T volume = 0, sum = 0;
-    MPM_ROLLED
-    for (int corner = 0; corner < 8; ++corner) {
-      Coord<3> node = cell;
-      bool own = true;
-      for (int d = 0; d < 3; ++d) {
-        node[d] += corner >> d & 1;
-        own = own && node[d] >= 0 && node[d] < Patch<3>::edge;
-      }
-      const int bin = place_of<3>(node);
-      if (!own || bin < first_bin || bin >= last_bin) continue;
-      MPM_ROLLED
-      for (int n = begin[bin] - begin[first_bin]; n < begin[bin + 1] - begin[first_bin]; ++n) {
-        if (scratch[corners_at() + n] != corner) continue;
-        const Pair pair = reinterpret_cast<const Pair*>(scratch + pairs_at())[n];
-        volume += pair.c[0], sum += pair.c[1];
-      }
-    }
-    if (volume == 0) return;
-    const auto& neighbours = update.all.neighbours;
-    Vector<T, 2>& of_cell =
-        update.means.sums(number_at<std::decay_t<decltype(neighbours)>, 3>(neighbours, slot, cell));
-    Kokkos::atomic_add(&of_cell[0], volume);
-    Kokkos::atomic_add(&of_cell[1], sum);
+  KOKKOS_INLINE_FUNCTION Cell cell_at(int slot, int n) const {
+    if (n >= cells) return {};
+    const auto& all = update.all;
+    const int at = slot * (cells + 1) + n;
+    const int number =
+        number_at<std::decay_t<decltype(all.neighbours)>, 3>(all.neighbours, slot, CellWindow::coord(n));
+    return {number, update.means.first(at), update.means.first(at + 1)};
+  }
+  /// Volume [m3], and volume times dilatation rate times a cell's edge.
+  KOKKOS_INLINE_FUNCTION Pair pair_of(const Window& window, const Sample& q) const {
+    const HalfLength<T> half = update.all.source.points.bodies(q.body).half_length;
+    NearestWeights<T> a[3];
+    for (int d = 0; d < 3; ++d) a[d] = nearest_weights(q.x[d], half);
+    return {q.volume, q.volume * window.dilatation(Window::lowest_of(q.place.bin()), a)};
   }
 };
 

@@ -10,8 +10,16 @@
 
 namespace mpm {
 
-/// beside: bytes of scratch memory that a team has for something else.
-template <class T, std::size_t beside = 0>
+/// Teams that share a multiprocessor. Fewer of them leave a thread more registers, which laws that are not
+/// light need in single precision.
+template <class T>
+constexpr int teams_about_nodes(bool is_light) {
+  return sizeof(T) == sizeof(float) ? (is_light ? 4 : 3) : 2;
+}
+
+/// beside: bytes of scratch memory that a team has for something else. at_once: teams that share a
+/// multiprocessor.
+template <class T, std::size_t beside = 0, int at_once = teams_about_nodes<T>(true)>
 struct NodeTile {
   using S = SoilTerms<3>;
   using Window = NodeWindow<T>;
@@ -37,9 +45,9 @@ struct NodeTile {
   static constexpr std::size_t window_bytes() {
     return rounded(Window::bytes() > sums_bytes(k_motion) ? Window::bytes() : sums_bytes(k_motion));
   }
-  /// Teams that share a multiprocessor, with its 227 KiB, of which 1 KiB a team is the driver's.
-  static constexpr int teams = is_single ? 4 : 2;
-  /// Particles that the stage has room for in what the teams leave each other: a tenth more than eight a bin.
+  static constexpr int teams = at_once;
+  /// Particles that the stage has room for in what the teams leave each other of the 227 KiB of a
+  /// multiprocessor, of which 1 KiB a team is the driver's: at least a tenth more than eight a bin.
   static constexpr int room = [] {
     const std::size_t own =
         227 * 1024 / teams - 1024 - window_bytes() - rounded(sizeof(int) * (bins + 1)) - rounded(beside);

@@ -48,12 +48,14 @@ struct NodeImages {
 
 /// A team moves the particles of a patch, whose laws are of the list Laws, and adds them where they now are
 /// to the nodes for the next step. The patch may lie at lower walls. No upper side is near, and none of its
-/// particles is alone. HasMeans: with F-bar, whose sums over cells are there.
+/// particles is alone. HasMeans: for runs with F-bar, whose sums over cells are there; kernels of laws that
+/// are not light are for runs without it too.
 template <class Space, class T, class Laws, bool HasMeans>
 struct UpdateAboutNodes {
   using Update = UpdateParticles<Space, T, 3, true, PatchKind::common, Laws>;
   static constexpr std::size_t mean_bytes = HasMeans ? CellWindow::cells * sizeof(T) : 0;
-  using Tile_ = NodeTile<T, mean_bytes>;
+  static constexpr bool is_light = std::is_same_v<Laws, LightMaterials>;
+  using Tile_ = NodeTile<T, mean_bytes, teams_about_nodes<T>(is_light)>;
   using Window = NodeWindow<T>;
   using S = SoilTerms<3>;
   static constexpr int threads = Tile_::threads, teams = Tile_::teams, bins = Tile_::bins;
@@ -63,6 +65,8 @@ struct UpdateAboutNodes {
 
   static constexpr std::size_t bytes() { return Tile_::bytes(); }
 
+  KOKKOS_INLINE_FUNCTION bool averages() const { return HasMeans && (is_light || all.has_means); }
+
   KOKKOS_INLINE_FUNCTION void operator()(const LargeTeam& team, unsigned char* scratch, int index) const {
     const int paused = all.control().paused, slot = all.slots(all.first + index);  // both asked for at once
     if (paused) return;
@@ -71,11 +75,9 @@ struct UpdateAboutNodes {
     prefetch_particles(team, slot);
     const Window window(tile.window);
     T* const mean = reinterpret_cast<T*>(scratch + Tile_::bytes() - Tile_::rounded(mean_bytes));
-    if constexpr (HasMeans)
-      for (int c = team.rank; c < CellWindow::cells; c += threads) mean[c] = mean_of_cell(slot, c);
     const NodeImages<T> images{all.grid, all.origin(slot), all.reach(all.origin(slot))};
     T moved = 0;
-    load_window(team, slot, images, window);
+    load_window(team, slot, images, window, averages() ? mean : nullptr);
     const int end = tile.begin[bins];
     for (int bin = 0; bin < bins;) {  // once, but of fuller patches than the stage has room for
       const int first = tile.begin[bin], rank = team.rank;
@@ -83,7 +85,7 @@ struct UpdateAboutNodes {
       if (end - first > Tile_::room)
         last_bin =
             bin + team.count(rank >= bin && rank < bins && tile.begin[rank + 1] - first <= Tile_::room);
-      if (bin > 0) load_window(team, slot, images, window);
+      if (bin > 0) load_window(team, slot, images, window, nullptr);
       const int last = tile.begin[last_bin];
       for (int p = first + rank; p < last; p += threads)
         step_particle(tile, window, mean, slot, images.at_wall, p, p - first, moved);
@@ -103,27 +105,42 @@ struct UpdateAboutNodes {
     return number_at<decltype(all.neighbours), 3>(all.neighbours, slot, Window::coord(n));
   }
 
-  /// Mean dilatation rate of a cell of the patch's CellWindow [1/s].
-  KOKKOS_INLINE_FUNCTION T mean_of_cell(int slot, int c) const {
-    const int cell = number_at<decltype(all.neighbours), 3>(all.neighbours, slot, CellWindow::coord(c));
-    const Vector<T, 2> sum = means.sums(cell < 0 ? 0 : cell);
-    return CellMean<T>{sum[0], sum[1]}.value();
+  /// Number of a cell of the patch's CellWindow.
+  KOKKOS_INLINE_FUNCTION int number_of_cell(int slot, int c) const {
+    return number_at<decltype(all.neighbours), 3>(all.neighbours, slot, CellWindow::coord(c));
   }
 
  public:
-  /// Sets the window; a team of any size takes it.
+  /// Sets the window; a team of any size takes it. mean: of the cells of the patch's CellWindow [1/s], or
+  /// null where no mean is asked for. All loads of a thread are under way at once.
   template <int size = threads>
   KOKKOS_INLINE_FUNCTION void load_window(const LargeTeam& team, int slot, const NodeImages<T>& images,
-                                          const Window& window) const {
+                                          const Window& window, T* mean) const {
     using Motion = typename Window::Motion;
-    for (int n = team.rank; n < Window::nodes; n += size) {
-      const int number = number_of(slot, images.at_wall ? images(n) : n);
-      Motion motion{};  // of nodes outside the grid, which no particle reaches
-      if (number >= 0) motion = *reinterpret_cast<const Motion*>(&all.kinematics(number, 0));
-      if (images.at_wall)
-        for (int k = 0; k < Window::values; ++k) motion.c[k] *= images.factor(n, k % 3, T(1));
-      Window::store(window.motion, n, motion);
+    constexpr int rounds = (Window::nodes + size - 1) / size;
+    int number[rounds];
+    for (int k = 0; k < rounds; ++k) {
+      const int n = team.rank + k * size;
+      number[k] = n < Window::nodes ? number_of(slot, n) : -1;
     }
+    const bool has_cell = mean && team.rank < CellWindow::cells;
+    const int cell = has_cell ? number_of_cell(slot, team.rank) : -1;
+    for (int k = 0; images.at_wall && k < rounds; ++k) {
+      const int n = team.rank + k * size;
+      if (n < Window::nodes) number[k] = number_of(slot, images(n));
+    }
+    Motion motion[rounds]{};  // zero of nodes outside the grid, which no particle reaches
+    for (int k = 0; k < rounds; ++k)
+      if (number[k] >= 0) motion[k] = *reinterpret_cast<const Motion*>(&all.kinematics(number[k], 0));
+    const Vector<T, 2> of_cell = cell < 0 ? Vector<T, 2>{} : means.sums(cell);
+    for (int k = 0; k < rounds; ++k) {
+      const int n = team.rank + k * size;
+      if (n >= Window::nodes) continue;
+      if (images.at_wall)
+        for (int v = 0; v < Window::values; ++v) motion[k].c[v] *= images.factor(n, v % 3, T(1));
+      Window::store(window.motion, n, motion[k]);
+    }
+    if (has_cell) mean[team.rank] = CellMean<T>{of_cell[0], of_cell[1]}.value();
     team.barrier();
     for (int n = team.rank; n < Window::nodes - 1; n += size) window.subtract(n);
     team.barrier();
@@ -151,7 +168,8 @@ struct UpdateAboutNodes {
     const auto& soil = all.source.points;
     const BodyProperties<T>& body =
         soil.bodies(all.one_body ? 0 : soil.body(p));  // read again in place of kept
-    const int bin = soil.cell(p) - slot * bins;
+    const CellPlace place = averages() ? means.place(p) : CellPlace(soil.cell(p) - slot * bins, 0);
+    const int bin = place.bin();
     Particle<T, 3> q;
     for_each_value([&](auto& value, const auto& field) { value = field(p); }, q, soil);
     GridSample<T, 3> t;
@@ -160,8 +178,7 @@ struct UpdateAboutNodes {
     window.sample(Window::lowest_of(bin), a, t.kinematics, t.gradient);
     for (int d = 0; d < 9; ++d) t.gradient[d / 3][d % 3] *= all.by.inv_spacing;
     const ParticleLaw<Space, T, 3, Laws> law{soil, p, body.material, all.law, false};
-    T of_cell = 0;
-    if constexpr (HasMeans) of_cell = mean[CellWindow::cell_of(bin, means.corner(p))];
+    const T of_cell = averages() ? mean[CellWindow::cell_of(bin, place.corner())] : T(0);
     T own = advance(q, law, t, of_cell, all.by, PlaneDomain{});
     for_each_value([&](auto& value, const auto& field) { field(p) = value; }, q, soil);
     if (at_wall && put_back(slot, bin, p, q.x)) q.x = soil.coordinate(p), q.v = soil.velocity(p);
