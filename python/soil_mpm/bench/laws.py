@@ -47,9 +47,9 @@ LARGE = {"serial": "", "cuda": "-mesh_upper 57.6,4.45 -soil_upper 57.6,4"}  # of
 BASE = "von_mises"
 
 
-def write_deck(model, parameters, path):
-    """inputs/footing.opts with another law."""
-    lines = [line for line in (ROOT / "inputs" / "footing.opts").read_text().splitlines()
+def write_deck(model, parameters, path, deck="footing"):
+    """inputs/DECK.opts with another law."""
+    lines = [line for line in (ROOT / "inputs" / f"{deck}.opts").read_text().splitlines()
              if not re.match(r"-clay_(?!density)", line)]
     lines += [f"-clay_model {model}", *(f"-clay_{key} {value}" for key, value in parameters.items())]
     path.write_text("\n".join(lines) + "\n")
