@@ -7,6 +7,7 @@ namespace mpm {
 struct ContactLaw {
   bool at_sites;          // contact at sites, not at nodes
   bool separates;         // the soil may part from it
+  bool permeable;         // water in the pores of the soil passes it
   double reach;           // m, gap at which the contact ends; 0: it does not depend on the gap
   double exponent;        // -, of its decrease with the gap
   double shear_limit;     // Pa, infinite where only the friction limits

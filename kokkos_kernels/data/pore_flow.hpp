@@ -28,14 +28,18 @@ struct Pores {
 /// Porosities that a run may have: beyond them soil is no porous medium.
 inline constexpr double k_least_porosity = 0.02, k_most_porosity = 0.98;
 
+/// Whether a side, one of PoreFlow::sides, holds the flux normal to it.
+KOKKOS_INLINE_FUNCTION bool holds_flux(Wall side) { return side == Wall::roller || side == Wall::friction; }
+
 /// Flow of water in pores.
 template <class Space, int Dim>
 struct PoreFlow {
   using Memory = typename Space::memory_space;
   WaterInPores water;
   Kokkos::View<Pores*, Memory> pores;  // by material
-  /// Sides of the mesh as the flux meets them: a roller where water does not pass, else `free` or `driven`
-  /// (as beyond sides that act: the flux goes on as at the side).
+  /// Sides of the mesh as the flux meets them. Where water does not pass: a roller, or `friction` where the
+  /// force of the water on the side counts, which a mirror would cancel. Else `free` or `driven`. Beyond
+  /// `friction` and `driven` the flux goes on as at the side, as velocities do beyond sides that act.
   Wall sides[Dim][2]{};
   Windows<Space> windows;  // of the sums at nodes, in the slots of the soil's
 

@@ -7,12 +7,14 @@ namespace mpm {
 
 /// Numbers that a node of such a side keeps from step to step: what friction keeps of normal impulses, as
 /// ImpulseTerms; the drift of an absorbing side [m]; its normal and tangential dashpots [kg/s] and springs
-/// [N/m], and its static reaction [N], as they were when the side began to absorb; impulse [N s] and work [J]
-/// of the side on the soil since the host last took them.
+/// [N/m], and its static reaction [N], as they were when the side began to absorb; in the place of the
+/// reaction, for a side with friction, the part of the normal impulse of the step that the water in the pores
+/// carries [N s]; impulse [N s] and work [J] of the side on the soil since the host last took them.
 template <int Dim>
 struct SideTerms {
   static constexpr int pressed = 0, drift = ImpulseTerms::size, dashpot = drift + Dim, spring = dashpot + 2,
-                       reaction = spring + 2, impulse = reaction + Dim, work = impulse + Dim, size = work + 1;
+                       reaction = spring + 2, carried = reaction, impulse = reaction + Dim,
+                       work = impulse + Dim, size = work + 1;
 };
 
 /// Rows of the table of a side normal to direction d: of its nodes, and of those beyond the sides around it.

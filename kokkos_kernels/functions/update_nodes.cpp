@@ -87,7 +87,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
   if (s.sides.has_columns()) advance_columns(s, dt);
   if constexpr (is_device<Space>)
     s.sides.in_use() || s.scheme.damping > 0 || s.rigid_turns || s.light_rigids.in_use ||
-            s.vertices.has_parts()
+            s.vertices.has_parts() || (s.has_friction && s.flow.in_use())
         ? update_nodes_by_teams<true>(s, dt, stream)
         : update_nodes_by_teams<false>(s, dt, stream);
   else

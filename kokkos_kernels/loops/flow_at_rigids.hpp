@@ -1,5 +1,5 @@
 #pragma once
-// Rigid bodies that the water in pores does not pass.
+// Rigid bodies at soil with water in its pores.
 
 #include "loops/node_update.hpp"
 
@@ -11,10 +11,19 @@ struct FlowMotion {
   Vector<double, Dim> grains, flux;
 };
 
+/// A rigid body that presses a node: the normal from the soil into it, its velocity along the normal [m/s],
+/// and whether the water passes it.
+template <int Dim>
+struct PressingRigid {
+  Vector<double, Dim> normal;
+  double speed = 0;
+  bool permeable = false;
+};
+
 /// A run without rigid bodies.
 struct NoRigids {
   template <int Dim>
-  KOKKOS_INLINE_FUNCTION bool normal_at(int, const FlowMotion<Dim>&, double, Vector<double, Dim>&) const {
+  KOKKOS_INLINE_FUNCTION bool pressing(int, const FlowMotion<Dim>&, double, PressingRigid<Dim>&) const {
     return false;
   }
 };
@@ -28,10 +37,10 @@ struct FlowAtRigids {
   explicit FlowAtRigids(const State<Space, T, Dim>& s, double dt)
       : update(node_update_of(s, dt)), contact(s.contact.place) {}
 
-  /// Normal from the soil into the body that presses node i, where one does: the node's flux along it is then
-  /// zero. share: M_w over the mass of the node, by which the grains take up the momentum of that flux.
-  KOKKOS_INLINE_FUNCTION bool normal_at(int i, const FlowMotion<Dim>& motion, double share,
-                                        Vector<double, Dim>& normal) const {
+  /// The body that presses node i, where one does. share: M_w over the mass of the node, by which the grains
+  /// take up the momentum of the flux that the body stops.
+  KOKKOS_INLINE_FUNCTION bool pressing(int i, const FlowMotion<Dim>& motion, double share,
+                                       PressingRigid<Dim>& by) const {
     const int slot = i / Patch<Dim>::cells;
     if (contact(slot) == 0) return false;
     const Coord<Dim> at = in_mesh(update.places.origin(slot), coord_of<Dim>(i));
@@ -39,7 +48,7 @@ struct FlowAtRigids {
     for (int m = 0; m < node.touching; ++m) {
       const int r = update.near_bodies.body(slot, m);
       if (r < 0) break;
-      if (touches(update.rigids(r), node, motion, share, normal)) return true;
+      if (touches(update.rigids(r), node, motion, share, by)) return true;
     }
     return false;
   }
@@ -49,7 +58,7 @@ struct FlowAtRigids {
   /// As UpdateNodes::touch finds it, by the velocities at the beginning of the contact.
   KOKKOS_INLINE_FUNCTION bool touches(const Rigid<Dim>& rigid, const Node& node,
                                       const FlowMotion<Dim>& motion, double share,
-                                      Vector<double, Dim>& normal) const {
+                                      PressingRigid<Dim>& by) const {
     Vector<T, Dim> boundary, n;
     for (int d = 0; d < Dim; ++d) boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
     cancel_at_rollers(update.places.grid, node.sides, boundary);
@@ -64,12 +73,16 @@ struct FlowAtRigids {
       if (distance + double(depth * spacing) >= rigid.law.reach) return false;
     }
     const Vector<double, Dim> of_body = rigid.motion.velocity_at(update.place_at(node.at));
-    double approach = 0;
+    by.permeable = rigid.law.permeable;
+    const double stopped = by.permeable ? 0.0 : share;
+    double arrives = 0;
+    by.speed = 0;
     for (int d = 0; d < Dim; ++d) {
-      normal[d] = n[d];
-      approach += (motion.grains[d] + share * motion.flux[d] - of_body[d]) * normal[d];
+      by.normal[d] = n[d];
+      arrives += (motion.grains[d] + stopped * motion.flux[d]) * by.normal[d];
+      by.speed += of_body[d] * by.normal[d];
     }
-    return approach > 0 || !rigid.law.separates;
+    return arrives > by.speed || !rigid.law.separates;
   }
 };
 

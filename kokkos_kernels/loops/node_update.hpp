@@ -407,6 +407,8 @@ struct UpdateNodes {
                              interface.pressed.store * kept_share(ImpulseTerms::store, fresh)};
       interface.fresh = fresh;
     }
+    if constexpr (acts)
+      if (has_friction && nodes.flux.extent(0) > 0) interface.carried = carried_by_water(node.i, m_i, other);
     const Vector<T, Dim> change = contact_correction(v, other, interface);
     if (has_friction && keeps) {
       nodes.impulse(row + ImpulseTerms::sum, node.i) = interface.pressed.sum;
@@ -441,6 +443,18 @@ struct UpdateNodes {
     const T speed = Kokkos::sqrt(dot(slip, slip));
     return feels_shear(approach, speed, other.within_soil, interface) ? Interface<T>::Shear::acts
                                                                       : Interface<T>::Shear::none;
+  }
+
+  /// Part of the normal impulse on a rigid body at node i that the water in the pores carries, over the mass
+  /// of the node [m/s]. CoupleFlow has left the normal of the body that the water does not pass and the
+  /// impulse with grains that stay at rest.
+  KOKKOS_INLINE_FUNCTION T carried_by_water(int i, T m_i, const Opponent<T, Dim>& other) const {
+    using F = FluxTerms<Dim>;
+    T along = 0;
+    for (int d = 0; d < Dim; ++d) along += nodes.flux(i, F::flux + d) * other.normal[d];
+    if (!(along > 0)) return 0;
+    const T share = nodes.flow(i, FlowTerms<Dim>::water) / m_i;
+    return along * (nodes.flux(i, F::rate) - share * dot(other.velocity, other.normal));
   }
 
   /// Adds the moment about the centre of a rigid of the force that changes a node's velocity (touch).

@@ -87,6 +87,7 @@ struct Interface {
   T friction;      // -, negative: none
   T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
   T fresh = 1;     // -, share of this step in the mean normal impulse
+  T carried = 0;   // m/s: part of the normal impulse over nodal mass that the water in the pores carries
   Pressed<T> pressed{};  // m/s: normal impulses over nodal mass
   T gap_scaling = 1;     // -, fraction of the normal correction
   bool separates = true;
@@ -128,7 +129,7 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
                            : interface.shear == Interface<T>::Shear::acts;
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
-    const T normal = usable_impulse(interface.pressed, interface.fresh, stop);
+    const T normal = usable_impulse(interface.pressed, interface.fresh, stop - interface.carried);
     largest = Kokkos::fmin(interface.shear_speed, interface.friction * normal);
   }
   const T hold = other.share * speed;  // change of the soil's velocity that ends the slip

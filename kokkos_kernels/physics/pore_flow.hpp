@@ -39,6 +39,11 @@ KOKKOS_INLINE_FUNCTION FlowRates solve_flow(const FlowNode& of) {
           (of.mass * of.water_force - of.water * of.force) / determinant};
 }
 
+/// Rates where the flux has the rate w' [m/s2], which a side gives it.
+KOKKOS_INLINE_FUNCTION FlowRates hold_flux(const FlowNode& of, double rate) {
+  return {(of.force - of.water * rate) / of.mass, rate};
+}
+
 /// Share of FLIP in the update of a particle's flux: the rest decays as fast as the drag stops it (1 / (1 + n
 /// g dt / k)), also where the nodes do not see it.
 KOKKOS_INLINE_FUNCTION double flux_flip(double n, double k, const WaterInPores& water, double dt) {

@@ -104,7 +104,8 @@ struct SideFriction {
                     node.mass} {
     const int d = n / 2;
     const double into = n % 2 == 1 ? 1 : -1;
-    const double normal = node.mass * usable_impulse(pressed, node.fresh, into * (v[d] - side.velocity[d]));
+    const double stop = into * (v[d] - side.velocity[d]) - kept[Terms::carried] / node.mass;
+    const double normal = node.mass * usable_impulse(pressed, node.fresh, stop);
     double squares = 0;
     for (int k = 0; k < Dim; ++k)
       if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);

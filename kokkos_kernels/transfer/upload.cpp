@@ -120,6 +120,7 @@ void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>&
     rigid.binned = rigid.motion.pose;
     rigid.law = {.at_sites = rigids[r].at_sites,
                  .separates = rigids[r].separates,
+                 .permeable = rigids[r].permeable,
                  .reach = rigids[r].reach,
                  .exponent = rigids[r].exponent,
                  .shear_limit = rigids[r].shear_limit,

@@ -107,6 +107,7 @@ struct RigidInput {
   bool surface_normal = false;      // contact normals from the surface, not from the mass gradient
   bool at_sites = false;            // contact at sites, not at nodes
   bool separates = true;            // the soil may part from it
+  bool permeable = false;           // water in the pores of the soil passes it
   double reach = 0;                 // m, gap at which the contact ends; 0: it does not depend on the gap
   double exponent = 6;              // -, of its decrease with the gap
 };

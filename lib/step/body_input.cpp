@@ -137,6 +137,7 @@ void set_contact(const Config& config, const RigidConfig& rigid, RigidInput* in)
   in->shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
   in->shear_fraction = rigid.shear_fraction.value_or(-1);
   in->friction = rigid.friction.value_or(-1);
+  in->permeable = rigid.permeable;
   in->surface = surface_input(rigid.shape, config.mesh, config.dim);
   for (const Shape& part : rigid.shape.parts)
     in->parts.push_back(part.kind == ShapeKind::stl

@@ -18,7 +18,9 @@ FlowInput flow_input(const Config& config) {
       if (is_open(wall))
         in.sides[d][side] = Wall::free;
       else
-        in.sides[d][side] = config.mesh.sides[d][side].open_to_water ? Wall::driven : Wall::roller;
+        in.sides[d][side] = config.mesh.sides[d][side].open_to_water          ? Wall::driven
+                            : config.mesh.sides[d][side].numbers.friction > 0 ? Wall::friction
+                                                                              : Wall::roller;
     }
   return in;
 }

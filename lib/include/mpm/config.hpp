@@ -195,6 +195,7 @@ struct RigidConfig {
   bool has_shear_limit = false;     // -NAME_shear_limit was given (it then bounds the friction too)
   bool absent = false;              // not in the run in this stage: a later one places it, or it was removed
   bool turns_in_run = false;        // it may turn in some stage of the run
+  bool permeable = false;           // water that flows in the pores of the soil passes it
 
   /// Whether it may turn, or may have turned in a stage before.
   bool turns() const {

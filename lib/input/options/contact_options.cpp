@@ -128,6 +128,7 @@ void read_contact(OptionReader& in, const Config& config, RigidConfig& rigid) {
            .change = k_by_choice},
           Words<bool>{{"free", true}, {"none", false}}, rigid.separates);
   read_gap_scaling(in, rigid);
+  read_permeable(in, rigid);
 }
 
 void choose_contact(OptionReader& in, const Config* before, Config& config) {

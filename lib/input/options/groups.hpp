@@ -159,6 +159,8 @@ void read_pores(OptionReader& in, const Config& config, MaterialConfig& material
 void read_water_in_pores(OptionReader& in, bool some, WaterConfig& water);
 /// Reads the pore pressure of a body at the start. Its material must have been read.
 void read_pore_pressure(OptionReader& in, const Config& config, BodyConfig& body);
+/// Reads whether water in pores passes a rigid body.
+void read_permeable(OptionReader& in, RigidConfig& rigid);
 /// Reads whether water in pores passes a side of the mesh.
 void read_side_water(OptionReader& in, const std::string& name, Wall kind, SideConfig& side);
 /// Rejects input that excludes water which flows in pores. After all bodies and sides.

@@ -144,6 +144,17 @@ void read_pore_pressure(OptionReader& in, const Config& config, BodyConfig& body
   }
 }
 
+void read_permeable(OptionReader& in, RigidConfig& rigid) {
+  const std::string option = rigid.name + "_permeable";
+  if (!in.listing() && in.owners_of("water").empty())
+    return in.not_taken(option, "no body has a material with -NAME_water saturated");
+  in.word({.name = option,
+           .meaning = "on: water that flows in pores passes the body, and has no pressure at it (hydrostatic "
+                      "under -water_level); off: it does not pass",
+           .change = k_by_choice},
+          Words<bool>{{"off", false}, {"on", true}}, rigid.permeable);
+}
+
 void read_side_water(OptionReader& in, const std::string& name, Wall kind, SideConfig& side) {
   const std::string option = name + "_water";
   side.open_to_water = kind == Wall::free;
@@ -175,7 +186,6 @@ void refuse_beside_flow(OptionReader& in, const Config& config) {
   for (const WaterRegionConfig& region : config.water.regions)
     if (region.dry || region.level) in.reject(region.name + "_water_level", "no level of its own" + where);
   for (const RigidConfig& rigid : config.rigids) {
-    if (rigid.friction.value_or(0) > 0) in.reject(rigid.name + "_friction", "none" + where);
     if (rigid.contact_at_sites) in.reject(rigid.name + "_contact", "nodes" + where);
     if (rigid.contact_normal != ContactNormal::surface)
       in.reject(rigid.name + "_contact_normal", "surface" + where);
@@ -185,7 +195,6 @@ void refuse_beside_flow(OptionReader& in, const Config& config) {
       const Wall wall = config.mesh.walls[d][side];
       const std::string name = side_option(d, side);
       if (has_dashpots(wall)) in.reject(name, "another kind of side" + where);
-      if (config.mesh.sides[d][side].numbers.friction > 0) in.reject(name + "_friction", "0" + where);
     }
 }
 
@@ -198,9 +207,10 @@ void check_pores(OptionReader& in, const Config& config) {
       in.reject(material.name + "_water",
                 "off with the model " + material.model + ", whose strength is that of total stress");
   if (water_flows(config)) return refuse_beside_flow(in, config);
+  const std::string none = "no body has a material with -NAME_water saturated";
   for (int d = 0; d < config.dim; ++d)
-    for (int side = 0; side < 2; ++side)
-      in.not_taken(side_option(d, side) + "_water", "no body has a material with -NAME_water saturated");
+    for (int side = 0; side < 2; ++side) in.not_taken(side_option(d, side) + "_water", none);
+  for (const RigidConfig& rigid : config.rigids) in.not_taken(rigid.name + "_permeable", none);
 }
 
 void check_pores_kept(OptionReader& in, const Config& first, const Config& now) {

@@ -1,8 +1,9 @@
 """Saturated soil in whose pores water flows: layers of random porosity and permeability, loads, sides, laws.
 
 A deck is a box of one to three layers, as wide as the mesh or with a free flank, with permeabilities over eight decades, water of 3 to
-100 times the stiffness of the soil, sides that are open or closed to the water, and one of: a load on its top, a load of water, a
-plate that is driven or falls, a wave (`wave`: elastic soil that begins with velocities and pressures). Some are submerged.
+100 times the stiffness of the soil, sides that are open or closed to the water, some with friction, and one of: a load on its top, a load
+of water, a plate that is driven or falls, with friction or permeable, a wave (`wave`: elastic soil that begins with velocities and
+pressures). Some are submerged.
 
 - The water of each body, and what has left it, add up to what it had.
 - Grains keep their volume, and the mass is that of the grains and the water in the pores.
@@ -92,7 +93,8 @@ class PoreFlow(Deck):
                     continue
                 water = draw.choice(["closed", "closed", "open"])
                 self.open |= water == "open"
-                words += [side, draw.choice(["roller", "roller", "fixed", "smooth"]), side + "_water", water]
+                kind = draw.choice(["roller", "roller", "fixed", "smooth", "friction"])
+                words += [side, kind, side + "_water", water, *([side + "_friction", draw.uniform(0.1, 0.8)] if kind == "friction" else [])]
         return words
 
     def run_options(self):
@@ -122,6 +124,8 @@ class PoreFlow(Deck):
     def plate_options(self):
         low, high = [0.0] * (self.dim - 1) + [self.size[-1]], [*self.size[:-1], self.size[-1] + 2 * CELL]
         words = ["-rigid_bodies", "plate", "-plate_shape", "box", "-plate_lower", vector(low), "-plate_upper", vector(high)]
+        words += ["-plate_friction", self.draw.uniform(0.1, 0.8)] if self.draw.random() < 0.4 else []
+        words += ["-plate_permeable", "on"] if self.draw.random() < 0.3 else []
         down = vector([0] * (self.dim - 1) + [-0.02 * self.size[-1] / self.end])
         if self.kind == "driven":
             return [*words, "-plate_motion", "prescribed", "-plate_velocity", down]
