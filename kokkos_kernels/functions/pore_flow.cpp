@@ -1,52 +1,32 @@
 #include "functions/pore_flow.hpp"
 
 #include "functions/step_kernels.hpp"
+#include "loops/cpu/host_pores.hpp"
 #include "loops/flow_nodes.hpp"
 #include "physics/pore_water.hpp"
 
 namespace mpm {
 namespace {
 
-/// Pore pressure and flux of the particles of a cell. The volume strain of the water, e + div w dt, is the
-/// cell's mean (F-bar with share 1), so that particles of a cell differ in pressure by no noise.
+/// Pore pressure and flux of the particles of a cell.
 template <class Space, class T, int Dim, ParticleDomain domain>
 struct UpdatePores {
-  Soil<Space, T, Dim> soil;
+  PoreUpdate<Space, T, Dim> pores;
   NodePlaces<Space, T, Dim> places, flow_places;  // the latter as the flux meets the sides of the mesh
   decltype(Bins<Space>::begin) begin;
   decltype(Nodes<Space, T, Dim>::kinematics) kinematics;
   decltype(Nodes<Space, T, Dim>::flux) flux;
-  decltype(PoreFlow<Space, Dim>::pores) pores;
-  decltype(Strays<Space>::alone) alone;
-  WaterInPores water;
   ControlView<Space> control;
-  double dt;
 
   KOKKOS_INLINE_FUNCTION void operator()(int cell) const {
     if (control().paused) return;
-    double volume = 0, strained = 0, drained = 0;  // m3
-    for (int p = begin(cell); p < begin(cell + 1); ++p) {
-      if (!is_wet(p)) continue;
-      const Rates rates = flow_at(p);
-      volume += soil.volume(p), drained += double(soil.volume(p)) * rates.of_flux;
-      strained += double(soil.volume(p)) * (rates.of_grains + rates.of_flux);
-    }
-    if (!(volume > 0)) return;
+    PoreSums sums;
     for (int p = begin(cell); p < begin(cell + 1); ++p)
-      if (is_wet(p)) press(p, dt * (strained / volume), dt * (drained / volume));
+      if (pores.is_wet(p)) pores.add(p, sample(p), sums);
+    if (sums.volume > 0) pores.press_cell(begin(cell), begin(cell + 1), sums);
   }
 
  private:
-  /// Divergence of the velocity of the grains and of the flux [1/s].
-  struct Rates {
-    double of_grains = 0, of_flux = 0;
-  };
-  KOKKOS_INLINE_FUNCTION bool is_wet(int p) const {
-    return pores(soil.material_of(p)).saturated && !is_alone(alone, soil.cell(p));
-  }
-  KOKKOS_INLINE_FUNCTION double porosity(int p) const {
-    return 1 - double(soil.solid_volume(p)) / double(soil.volume(p));
-  }
   /// Whether a particle of a cell reaches nodes at sides of the mesh.
   KOKKOS_INLINE_FUNCTION bool is_near_sides(int cell) const {
     const Coord<Dim> at = in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
@@ -57,6 +37,7 @@ struct UpdatePores {
   /// Calls f(node, weight, gradient [1/cell], sign) for the nodes of particle p.
   template <class F>
   KOKKOS_INLINE_FUNCTION void nodes_of(const NodePlaces<Space, T, Dim>& at, int p, F&& f) const {
+    const auto& soil = pores.soil;
     for_each_node<Kind::motion>(
         soil, domain_of<domain>(soil, p, soil.bodies(soil.body(p))), at, p,
         [&](int i, T w, const auto& grad, auto&&, auto&& sign) { f(i, w, grad, sign); });
@@ -69,24 +50,22 @@ struct UpdatePores {
     if constexpr (domain == ParticleDomain::ring) sum += c[0] * double(grad[Dim]);
     return sum;
   }
-
-  /// Gives particle p its flux at the end of the step; returns the divergences there.
-  KOKKOS_INLINE_FUNCTION Rates flow_at(int p) const {
-    Rates rates;
-    Vector<double, Dim> c, now{}, change{};
+  KOKKOS_INLINE_FUNCTION PoreSample<Dim> sample(int p) const {
+    PoreSample<Dim> at;
+    Vector<double, Dim> c;
     const auto add_grains = [&](int i, const auto& grad, const auto& sign) {
       for (int d = 0; d < Dim; ++d) c[d] = double(sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d));
-      rates.of_grains += divergence(c, grad);
+      at.of_grains += divergence(c, grad);
     };
     const auto add_water = [&](int i, T w, const auto& grad, const auto& sign) {
       for (int d = 0; d < Dim; ++d) {
         c[d] = double(sign(d) * flux(i, FluxTerms<Dim>::flux + d));
-        now[d] += double(w) * c[d];
-        change[d] += double(w * sign(d) * flux(i, FluxTerms<Dim>::rate + d));
+        at.flux[d] += double(w) * c[d];
+        at.rate[d] += double(w * sign(d) * flux(i, FluxTerms<Dim>::rate + d));
       }
-      rates.of_flux += divergence(c, grad);
+      at.of_flux += divergence(c, grad);
     };
-    if (is_near_sides(soil.cell(p))) {  // where the images of nodes may differ
+    if (is_near_sides(pores.soil.cell(p))) {  // where the images of nodes may differ
       nodes_of(places, p, [&](int i, T, const auto& grad, const auto& sign) { add_grains(i, grad, sign); });
       nodes_of(flow_places, p, add_water);
     } else {
@@ -94,41 +73,38 @@ struct UpdatePores {
         add_grains(i, grad, sign), add_water(i, w, grad, sign);
       });
     }
-    rates.of_grains *= double(places.grid.inv_spacing), rates.of_flux *= double(places.grid.inv_spacing);
-    const double n = porosity(p), k = permeability_at(pores(soil.material_of(p)), n);
-    const double flip = flux_flip(n, k, water, dt);
-    for (int d = 0; d < Dim; ++d)
-      soil.flux(p)[d] =
-          static_cast<T>(flip * (double(soil.flux(p)[d]) + dt * change[d]) + (1 - flip) * now[d]);
-    return rates;
-  }
-  /// Changes the pore pressure of particle p by a volume strain of its water.
-  KOKKOS_INLINE_FUNCTION void press(int p, double strain, double drained) const {
-    T& pressure = soil.history.column[soil.history.pore](p);
-    const T before = pressure,
-            after = static_cast<T>(
-                Kokkos::fmax(-water.tension, double(before) - water.bulk_modulus / porosity(p) * strain));
-    add_isotropic(soil.stress(p), before - after);
-    pressure = after;
-    soil.outflow(p) += double(soil.volume(p)) * drained * water_compression(before, water);
+    at.of_grains *= double(places.grid.inv_spacing), at.of_flux *= double(places.grid.inv_spacing);
+    return at;
   }
 };
 
 template <ParticleDomain domain, class Space, class T, int Dim>
 void update_pores_for(State<Space, T, Dim>& s, double dt) {
-  Kokkos::parallel_for("mpm::update_pores",
-                       light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
-                       UpdatePores<Space, T, Dim, domain>{s.soil.points,
-                                                          {s.grid, s.patches},
-                                                          {grid_of_flow(s.grid, s.flow), s.patches},
-                                                          s.soil.bins.begin,
-                                                          s.nodes.kinematics,
-                                                          s.nodes.flux,
-                                                          s.flow.pores,
-                                                          s.strays.alone,
-                                                          s.flow.water,
-                                                          s.control,
-                                                          dt});
+  const PoreUpdate<Space, T, Dim> pores{s.soil.points, s.flow.pores, s.strays.alone, s.flow.water, dt};
+  if constexpr (is_device<Space>) {
+    Kokkos::parallel_for("mpm::update_pores",
+                         light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
+                         UpdatePores<Space, T, Dim, domain>{pores,
+                                                            {s.grid, s.patches},
+                                                            {grid_of_flow(s.grid, s.flow), s.patches},
+                                                            s.soil.bins.begin,
+                                                            s.nodes.kinematics,
+                                                            s.nodes.flux,
+                                                            s.control});
+  } else {
+    const HostPores<Space, T, Dim, domain> host{pores,
+                                                s.grid,
+                                                grid_of_flow(s.grid, s.flow),
+                                                s.soil.bins.begin,
+                                                s.patches.neighbours,
+                                                s.patches.origin,
+                                                s.nodes.kinematics,
+                                                s.nodes.flux};
+    const Shared slots[] = {slots_held<Dim>(s.soil.bins)};
+    for_each_shared("mpm::update_pores", s.space, slots, [&](int, int n) {
+      if (!s.control().paused) host(s.soil.bins.active_slots(n));
+    });
+  }
 }
 
 template <class Space, class T, int Dim>

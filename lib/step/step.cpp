@@ -49,8 +49,9 @@ struct Step {
     }));
     if (ranks) PetscCall(ranks->add_soil(s));                      //   the sum over ranks
     if (!beside) PetscCall(contacts_to_nodes(s, ranks, s.space));  //   strength, how the soil of a field lies
-    PetscCall(flow_to_nodes(s, ranks));                            //   water in the pores
-    complete_nodes(s.space);                                       //   particles that are alone
+    if (s.flow.in_use())
+      PetscCall(run(StepPhase::soil_to_nodes, [&] { return flow_to_nodes(s, ranks); }));  //   water in pores
+    complete_nodes(s.space);  //   particles that are alone
     if (beside) overlap->join(s.space);
     if (rayleigh)
       PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
