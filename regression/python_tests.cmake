@@ -46,6 +46,7 @@ mpm_python_test(docs.commands "TIMEOUT 900 ${threads}" commands.py ${mpm})
 mpm_python_test(docs.notebooks "TIMEOUT 900 ${threads}" notebooks.py ${mpm})
 mpm_python_test(docs.tutorials "" tutorials.py --index)
 # A test for each row of the table of tutorials, whose last column says which are long.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/tutorials/index.md)
 file(STRINGS ${PROJECT_SOURCE_DIR}/docs/tutorials/index.md rows REGEX "^\\| \\[.*\\| (fast|long) \\|$")
 foreach(row ${rows})
   string(REGEX MATCH "\\(([a-z_]+)\\.md\\).*\\| (fast|long) \\|$" found "${row}")
