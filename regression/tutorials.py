@@ -2,7 +2,7 @@
 """Holds the pages of docs/tutorials against the program: each figure of a page is the one that its commands and its code give.
 
 usage: tutorials.py PATH_TO_mpm NAME ... [--docs] [--out FOLDER [--again]]    runs the tutorials of these names (all: every one)
-       tutorials.py --index                           compares the table of docs/tutorials/index.md with the pages, without a run
+       tutorials.py --index                           compares the table of docs/tutorials/index.md and the decks with the pages, without a run
 
 A page has one table of figures, | figure | here | exact or published | within | source |, which is the source of the test: `here` is what the
 page says, `within` how far a run may be from it. The commands are the lines of its ```sh blocks, run in a folder of their own that has inputs/ and
@@ -132,6 +132,7 @@ def run_page(name, given):
         if fault:
             return [fault]
         if given.docs:
+            page = Page(name)  # as it is by now, after runs of minutes
             page.write_figures(figures)
             copy_pictures(page, folder)
     return faults_of(page, figures)
@@ -159,14 +160,36 @@ def shrink(place, width):
     picture.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(place, optimize=True)
 
 
+def key_of(option):
+    """An option without the name of its owner, and with the same number in all names: fill_2_shape is that of fill_1_shape."""
+    return re.sub(r"\d+", "1", option).partition("_")[2]
+
+
+def check_deck(page):
+    """Lines about options of the deck that the page does not explain, by themselves or by the same one of another name, and about values that
+    differ from the deck's; a value that ends with ... is the beginning of one."""
+    path = next(path for path in (ROOT / "inputs").rglob(f"{deck_of(page.name)}.opts"))
+    lines = [line.split("#")[0].split(maxsplit=1) for line in path.read_text().splitlines()]
+    deck = {words[0]: words[1].strip() if len(words) > 1 else "" for words in lines if words}
+    said = dict.fromkeys(re.findall(r"`(-[a-z]\w*)[ `]", page.text))
+    keys = {key_of(name) for name in said}
+    faults = [f"{page.name}: {name} of {path.name} is not explained" for name in deck if name not in said and key_of(name) not in keys]
+    for name, value in re.findall(r"`(-[a-z]\w*) ([^`]+)`", page.text.split("## The deck")[1].split("\n## ")[0]):
+        given = deck.get(name)
+        if given is not None and given != value and not (value.endswith("...") and given.startswith(value[:-3])):
+            faults.append(f"{page.name}: {name} is {given} in {path.name}, the page says {value}")
+    return faults
+
+
 def check_index():
-    """Lines about rows of the index that differ from the pages, and about pictures that are too large or missing."""
+    """Lines about rows of the index that differ from the pages, about decks, and about pictures that are too large or missing."""
     index = {name: cells_of(rest) for name, rest, _ in ROW.findall((PAGES / "index.md").read_text())}
     pages = {path.stem for path in PAGES.glob("*.md")} - {"index"}
     faults = [f"{name}: is not in the index" for name in sorted(pages - set(index))]
     for name in index:
         page = Page(name)
         figure, here, known = page.rows[0][:3]
+        faults += check_deck(page)
         if index[name][1:4] != [figure, here, known]:
             faults.append(f"{name}: the index says {index[name][1:4]}, the page {[figure, here, known]}")
         for picture in page.pictures():
