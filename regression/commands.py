@@ -73,9 +73,8 @@ class Tries:
         return subprocess.run([str(word) for word in words], cwd=self.folder, env=self.environment, capture_output=True, text=True)
 
     def dry_run(self, options):
-        """The fault of a run with some options of the program, on this machine's back ends."""
-        options = [STANDS_FOR.get(word, word) for word in options]
-        options = ["serial" if before == "-backend" and word == "cuda" else word for before, word in zip(["", *options], options)]
+        """The fault of a run with some options of the program."""
+        options = on_processor([STANDS_FOR.get(word, word) for word in options])
         done = self.run(self.program, *[word for word in options if word not in VALUELESS], "-dry_run")
         return done.stderr.strip() if done.returncode else ""
 
@@ -107,7 +106,7 @@ class Tries:
         options = options_of(rest[1:])
         if command == "certify":  # it lets a mesh grow to whole cells
             options = [word for before, word in zip(["", *options], options) if "-mesh_spacing" not in (before, word)]
-        done = self.run(ROOT / "scripts" / "soil-mpm", "check", STANDS_FOR.get(rest[0], rest[0]), *options)
+        done = self.run(ROOT / "scripts" / "soil-mpm", "check", STANDS_FOR.get(rest[0], rest[0]), *on_processor(options))
         return done.stderr.strip() if done.returncode else ""
 
     def script(self, words):
@@ -131,6 +130,11 @@ class Tries:
         if words[0] == "soil-mpm":
             return self.soil_mpm(words[1:])
         return self.dry_run(words[1:]) if words[0] == "mpm" else self.script(words)
+
+
+def on_processor(options):
+    """Options with a back end that every machine has."""
+    return ["serial" if before == "-backend" and word == "cuda" else word for before, word in zip(["", *options], options)]
 
 
 def options_of(words):
