@@ -30,8 +30,8 @@ LEFT_OUT = (
     (r"-NAME_contact", "NAME stands for a body"),
     (r"\$quiet", "the page sets a variable of the shell before"),
     (r"mpm_unit", "unit tests: the tests unit.* and on ranks"),
-    (r"terrain_slide", "its rasters are made first: the tutorial terrain runs it"),
-    (r"scripts/(setup|test|wheel|bundle)\b", "installs, builds or tests everything: scripts/test and package.* are these"),
+    (r"inputs/terrain_slide\.opts", "its rasters are made first: the tutorial terrain runs it"),
+    (r" && eval ", "sets up, and changes the shell that reads it"),
 )
 VALUELESS = {"-dry_run"}
 
