@@ -107,6 +107,15 @@ class Ensemble:
     def table(self, *wanted: str | tuple[str, Callable[[Run], float]]) -> Any:
         """A row for each run that has finished: run, its options, and of its history columns (value()) or (name, f) with f(run). A
         data frame of pandas where pandas is there, else a structured array of numpy."""
+        columns = self.columns(*wanted)
+        try:
+            import pandas
+        except ImportError:
+            return np.rec.fromarrays([np.array(values) for values in columns.values()], names=list(columns))
+        return pandas.DataFrame(columns)
+
+    def columns(self, *wanted: str | tuple[str, Callable[[Run], float]]) -> dict[str, list[Any]]:
+        """The columns of table()."""
         numbers = self.finished()
         columns: dict[str, list[Any]] = {"run": list(numbers)}
         for k, name in enumerate(self.header):
@@ -116,11 +125,14 @@ class Ensemble:
                 columns[each] = [self.value(number, each) for number in numbers]
             else:
                 columns[each[0]] = [each[1](self[number]) for number in numbers]
-        try:
-            import pandas
-        except ImportError:
-            return np.rec.fromarrays([np.array(values) for values in columns.values()], names=list(columns))
-        return pandas.DataFrame(columns)
+        return columns
+
+    def write_table(self, path: Path | str, *wanted: str | tuple[str, Callable[[Run], float]]) -> Path:
+        """Writes table() as a CSV file, and returns its path."""
+        columns = self.columns(*wanted)
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            csv.writer(file).writerows([list(columns), *zip(*columns.values())])
+        return Path(path)
 
     def plot(self, x: str | None = None, y: str | None = None) -> Path:
         """Draws column y over x of every run (sweep.png); returns the path."""

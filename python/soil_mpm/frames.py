@@ -17,6 +17,39 @@ if TYPE_CHECKING:
 UNITS = {"position": "m", "velocity": "m/s", "grid_velocity": "m/s", "stress": "Pa", "volume": "m3"}  # of frames that name none
 
 
+AT_ONCE = 1 << 20  # particles that are read at a time
+
+
+def read_rows(data: h5py.Dataset, rows: np.ndarray) -> np.ndarray:
+    """Rows of a dataset [n, ...] by their numbers [n], which rise: the parts of the file that have some of them, one after the other."""
+    found = np.empty((len(rows), *data.shape[1:]), data.dtype)
+    begins = np.searchsorted(rows, np.arange(0, len(data) + AT_ONCE, AT_ONCE))
+    for begin, end in zip(begins[:-1], begins[1:]):
+        if end > begin:
+            first, last = rows[begin], rows[end - 1]
+            found[begin:end] = data[first:last + 1][rows[begin:end] - first]
+    return found
+
+
+class Rows(Mapping[str, np.ndarray]):
+    """Some particles of a body: rows["stress"] reads them, as an array [n] or [n, components]."""
+
+    def __init__(self, body: Body, rows: np.ndarray):
+        self._body, self._rows = body, rows
+
+    def __getitem__(self, key: str) -> np.ndarray:
+        return read_rows(self._body[key], self._rows)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._body
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._body)
+
+    def __len__(self) -> int:
+        return len(self._body)
+
+
 class Body(Mapping[str, Any]):
     """Particles of a body or rigid body in a frame. body["stress"] is a dataset of the file, of which an index reads the part alone:
     body["stress"][:100, 0]. body.field("mises") reads a field whole. Attributes are datasets: body.stress[:]."""
@@ -58,16 +91,26 @@ class Body(Mapping[str, Any]):
         """Names that field() takes: datasets, and what follows from them."""
         return list(dict.fromkeys([*self, *(name for name, derived in DERIVED.items() if derived.is_in(self))]))
 
-    def field(self, name: str) -> np.ndarray:
+    def field(self, name: str, rows: slice | Sequence[int] | np.ndarray | None = None) -> np.ndarray:
         """A field of all particles, in SI units: a dataset of the frame [N] or [N, 3 or 6], or what follows from them [N]: pressure,
-        effective_pressure, mises [Pa], stress_xx ... stress_zx [Pa], velocity_x ... velocity_z [m/s], speed [m/s]."""
+        effective_pressure, mises [Pa], stress_xx ... stress_zx [Pa], velocity_x ... velocity_z [m/s], speed [m/s]. rows: particles that are
+        read, in their order in the frame: a slice, or numbers that rise."""
+        if isinstance(rows, slice):
+            rows = np.arange(*rows.indices(self.count))
+        datasets = self if rows is None else Rows(self, np.asarray(rows, dtype=int))
         if name == "speed":
-            return DERIVED["grid_velocity"].of(self)
+            return DERIVED["grid_velocity"].of(datasets)
         if name in self:
-            return self[name][()]
+            return datasets[name][()]
         if name in DERIVED and DERIVED[name].is_in(self):
-            return DERIVED[name].of(self)
+            return DERIVED[name].of(datasets)
         raise NoSuchResult(f"{self.name} has no field {name}; it has {', '.join(self.fields())}")
+
+    def positions(self, dim: int) -> Iterator[tuple[int, np.ndarray]]:
+        """Positions [n, dim] in m of some particles after the other, and the number of the first of them."""
+        data = self["position"]
+        for first in range(0, len(data), AT_ONCE):
+            yield first, data[first:first + AT_ONCE][:, :dim]
 
     def unit(self, name: str) -> str:
         """SI unit of a field; empty where it is not known."""
@@ -128,18 +171,20 @@ class Frame:
         if points.shape[1] != self.run.dim:
             raise NoSuchResult(f"points have {points.shape[1]} coordinates; the run is in {self.run.dim}D")
         near = {body: self.near(body, points) for body in bodies}
-        position, volume = (np.concatenate([self[body][key][()][near[body]] for body in bodies]) for key in ("position", "volume"))
+        position, volume = (np.concatenate([self[body].field(key, near[body]) for body in bodies]) for key in ("position", "volume"))
         found: dict[str, np.ndarray] = {}
         for name in names:
-            values = np.concatenate([self[body].field(name)[near[body]] for body in bodies])
+            values = np.concatenate([self[body].field(name, near[body]) for body in bodies])
             flat = values.reshape(len(values), int(np.prod(values.shape[1:])))
             found[name] = sample(position, volume, flat, points, self.run.number("mesh_spacing")).reshape(len(points), *values.shape[1:])
         return found
 
     def near(self, body: str, points: np.ndarray) -> np.ndarray:
-        """Particles of a body [N], true in the box of some points and two cells round it."""
-        position, room = self[body]["position"][()][:, :self.run.dim], 2 * self.run.number("mesh_spacing")
-        return np.all((position >= points.min(axis=0) - room) & (position <= points.max(axis=0) + room), axis=1)
+        """Numbers of the particles of a body in the box of some points and two cells round it."""
+        room = 2 * self.run.number("mesh_spacing")
+        lower, upper = points.min(axis=0) - room, points.max(axis=0) + room
+        return np.concatenate([first + np.flatnonzero(np.all((position >= lower) & (position <= upper), axis=1))
+                               for first, position in self[body].positions(self.run.dim)] or [np.empty(0, dtype=int)])
 
     def on_line(self, begin: Any, end: Any, fields: Sequence[str] | str, points: int = 201, **more: Any) -> dict[str, np.ndarray]:
         """Fields along a line from one point to another [m]; "way" is the distance from its beginning [m]."""
@@ -175,9 +220,8 @@ class Frame:
     def corners(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner [dim] of the cells that the bodies reach, m."""
         step, origin = self.run.number("mesh_spacing"), np.array(self.run.numbers("mesh_lower"))
-        positions = [self[body]["position"][()][:, :self.run.dim] for body in self.bodies()]
-        low = np.min([each.min(axis=0) for each in positions], axis=0)
-        high = np.max([each.max(axis=0) for each in positions], axis=0)
+        ends = [(part.min(axis=0), part.max(axis=0)) for body in self.bodies() for _, part in self[body].positions(self.run.dim)]
+        low, high = np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)
         return origin + np.floor((low - origin) / step) * step, origin + np.ceil((high - origin) / step) * step
 
 

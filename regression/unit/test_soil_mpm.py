@@ -24,7 +24,7 @@ import numpy as np
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 os.environ["MPM_PROGRAM"] = str(PROGRAM)
 
-from soil_mpm import (Answer, Deck, NoProgram, NoSuchResult, Run, RunFailed, UnknownOption, WrongDeck, WrongValue, __main__, certify, launch,
+from soil_mpm import (Answer, Deck, NoProgram, NoSuchResult, Run, RunFailed, UnknownOption, WrongDeck, WrongValue, __main__, certify, frames, launch,
                       shipped, sweep)
 from soil_mpm.certificate import bar_of, judge, meshes
 from soil_mpm.deck_text import DeckText
@@ -245,6 +245,22 @@ class Runs(unittest.TestCase):
             with self.assertRaises(NoSuchResult):
                 frame.on_section("y", 0, "velocity_y")
 
+    def test_parts_of_a_frame_are_the_same_as_parts_of_the_whole(self):
+        """However many particles are read at a time."""
+        with self.run_.frame_at() as frame:
+            body, box = frame["block"], frame.corners()
+            whole = {name: body.field(name) for name in (*body.fields(), "speed")}
+            values = frame.at([(1.1, 0.7), (2, 1.9)], ["stress", "mises"])
+            for count in (1, 7, 64, 1 << 20):
+                with unittest.mock.patch.object(frames, "AT_ONCE", count):
+                    for rows in (slice(3, 90, 4), [0, 2, 63, 64, 65, body.count - 1], []):
+                        for name, field in whole.items():
+                            np.testing.assert_array_equal(body.field(name, rows), field[rows if isinstance(rows, slice) else np.array(rows, int)])
+                    np.testing.assert_array_equal(frame.corners(), box)
+                    for name, field in frame.at([(1.1, 0.7), (2, 1.9)], ["stress", "mises"]).items():
+                        np.testing.assert_array_equal(field, values[name])
+            self.assertTrue(np.isnan(frame.at((-100, -100), "mises")["mises"]).all())
+
     def test_what_fails_has_the_words_of_the_program(self):
         deck = self.deck.copy(block_upper=(4, -1))
         with self.assertRaisesRegex(RunFailed, "block_upper") as caught:
@@ -259,6 +275,9 @@ class Runs(unittest.TestCase):
         np.testing.assert_allclose(table["block_mass"], 8000)
         np.testing.assert_allclose(table["rock_young"], [1e6, 2e6])
         np.testing.assert_allclose(table["time:max"], 0.1)
+        written = swept.write_table(out / "results.csv", "block_mass", ("double", lambda run: 2 * run["block_mass"][-1])).read_text().split()
+        self.assertEqual((written[0], len(written)), ("run,rock_young,rock_density,block_mass,double", 3))
+        self.assertEqual(float(written[2].split(",")[-1]), 2 * table["block_mass"][1])
         stamp = (out / "run_0000" / "history.csv").stat().st_mtime_ns
         again = sweep(self.deck, {"rock_young": [1e6, 2e6], "rock_density": [1000]}, out, progress=False)
         self.assertEqual((again.finished(), stamp), ([0, 1], (out / "run_0000" / "history.csv").stat().st_mtime_ns))
