@@ -70,6 +70,7 @@ MPM_VECTOR_OF(float, 16)
 MPM_VECTOR_OF(double, 2)
 MPM_VECTOR_OF(double, 4)
 MPM_VECTOR_OF(double, 8)
+MPM_VECTOR_OF(double, 16)
 #undef MPM_VECTOR_OF
 #endif
 }  // namespace impl
