@@ -163,6 +163,55 @@ TEST_CASE("the flow of a fluid with a yield stress is solved to round-off", "[fl
   CHECK(largest_residual<float>() < 5e-7);
 }
 
+TEST_CASE("the flow of a fluid with exponent 1/2 or 2 has both its parts to round-off", "[flowing_laws]") {
+  const auto check = [](auto of_type, double allowed) {
+    using T = decltype(of_type);
+    for (const double n : {0.5, 2.})
+      for (const double consistency : {1e-6, 1e-3, 1., 1e5})
+        for (double beyond = 1e-6; beyond < 1e9; beyond *= 17)
+          for (const double dt : {1e-8, 1e-4, 1.}) {
+            auto law = law_of<YieldStressFluid<T>>(slurry(n));
+            law.consistency = static_cast<T>(consistency), law.prepare();
+            const auto flow = law.flow(static_cast<T>(beyond), static_cast<T>(dt));
+            const double elastic = double(law.shear_modulus) * flow.strain,
+                         viscous = consistency * std::pow(flow.strain / dt, n);
+            CAPTURE(n, consistency, beyond, dt, flow.stress, flow.strain);
+            CHECK(std::fabs(flow.stress + elastic - beyond) <= allowed * beyond);
+            CHECK(std::fabs(flow.stress - viscous) <= allowed * viscous);
+          }
+  };
+  check(double(), 1e-14);
+  check(float(), 2e-6);
+}
+
+TEST_CASE("a step of power elasticity has the growth and the moduli of its pressure to round-off",
+          "[flowing_laws]") {
+  const auto check = [](auto of_type, double allowed) {
+    using T = decltype(of_type);
+    for (const double n : {0., 0.3, 0.5, 0.999999, 1.}) {
+      Values values = k_sand;
+      values[2].second = n;
+      const auto law = law_of<PowerElastic<T>>(values);
+      for (const double p : {10., 1e4, 3e6})
+        for (double share = 1e-9; share < 0.1; share *= 3)  // of the pressure, that a step changes it by
+          for (const int sign : {-1, 1}) {
+            const T modulus = law.bulk_modulus_at(static_cast<T>(p));
+            const T compression = static_cast<T>(sign * share * p) / modulus, shear = compression / 3;
+            Point<PowerElastic<T>, 3> point(law, {-p, -p, -p, 0, 0, 0});
+            point.strain({-compression, 0, 0, shear, 0, 0});
+            const double grown = law.growth(static_cast<T>(p), compression),
+                         middle = law.bulk_modulus_at(static_cast<T>(p + grown / 2)),
+                         sheared = 2 * law.shear_ratio * middle * shear;
+            CAPTURE(n, p, share, sign, grown);
+            CHECK(std::fabs(-mean_of(point.stress) - p - grown) <= allowed * p);
+            CHECK(std::fabs(point.stress[3] - sheared) <= allowed * 10 * std::fabs(sheared));
+          }
+    }
+  };
+  check(double(), 1e-15);
+  check(float(), 3e-7);
+}
+
 TEST_CASE("power elasticity: exact in volume, in parts and through its lowest pressure", "[flowing_laws]") {
   Point<PowerElastic<double>, 3> point(law_of<PowerElastic<double>>(k_sand), {-1e4, -1e4, -1e4, 0, 0, 0});
   for (int n = 0; n < 15; ++n) point.strain({-1e-3 / 3, -1e-3 / 3, -1e-3 / 3, 0, 0, 0});
