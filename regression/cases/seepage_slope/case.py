@@ -15,6 +15,7 @@ from soil_mpm.results import read_frame
 SLOPE, WEIGHT, WATER, DEPTH = np.radians(22), 19.5e3, 9.81e3, 3 * np.cos(np.radians(22))  # -, N/m3, N/m3, m normal to the slope
 COHESION, FRICTION, SAFETY, CELL = 5e3, np.tan(np.radians(32)), 1.01462, 0.23179594  # Pa, -, -, m
 PRECISIONS = ("double",)
+LONG = True
 
 
 def strength(share):
