@@ -48,6 +48,37 @@ void update_by_teams(State<Space, T, Dim>& s, const Kokkos::View<int*, typename 
 
 }  // namespace
 
+TEST_CASE("common patches near contact of soil bodies are listed before the other ones", "[split_patches]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    INFO(B::name());
+    auto s = before_update<B>(scattered<B::dim>(4));
+    s.p2g.about_nodes = s.plan.sums_ahead = true;
+    s.interfaces.fields = 2;
+    s.interfaces.laws = decltype(s.interfaces.laws)("laws", 4);
+    s.contact.place = decltype(s.contact.place)("place", s.patches.slots);
+    const auto place = Kokkos::create_mirror_view(s.contact.place);
+    for (int slot = 0; slot < s.patches.slots; slot += 3) place(slot) = slot / 3 + 1;
+    Kokkos::deep_copy(s.contact.place, place);
+    split_patches(s, s.space);
+    REQUIRE(s.split.parts.size() == 1);
+    const auto part = s.split.parts.front();
+    const auto slots = on_host(s.split.slots), active = on_host(s.soil.bins.active_slots);
+    CHECK(part.first < part.near);
+    CHECK(part.near < part.middle);
+    CHECK(s.split.has_early());
+    CHECK(s.split.holds({s.space, 0, s.soil.bins.last_active}));
+    std::vector<int> listed(slots.data() + part.first, slots.data() + part.last);
+    for (int n = part.first; n < part.middle; ++n) CHECK((place(slots(n)) != 0) == (n < part.near));
+    CHECK(std::is_sorted(listed.begin(), listed.begin() + part.near));
+    CHECK(std::is_sorted(listed.begin() + part.near, listed.begin() + part.middle));
+    std::sort(listed.begin(), listed.end());
+    std::vector<int> all(active.data(), active.data() + s.soil.bins.last_active);
+    std::sort(all.begin(), all.end());
+    CHECK(listed == all);
+  });
+}
+
 TEST_CASE("patches are split by walls and by particles that are alone", "[split_patches]") {
   for_each_build([](auto build) {
     using B = decltype(build);
@@ -60,7 +91,7 @@ TEST_CASE("patches are split by walls and by particles that are alone", "[split_
       split_patches(s, s.space);
       const bool parted = border > 0 && border < held;
       REQUIRE(s.split.parts.size() == (parted ? 2u : 1u));
-      CHECK(s.split.has_others());
+      CHECK(s.split.has_early());
       CHECK(s.split.holds({s.space, 0, held}));
       CHECK(s.split.holds({s.space, border, held}));
       CHECK_FALSE(s.split.holds({s.space, 0, held - 1}));
