@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from soil_mpm.results import Run
 
 UNITS = {"position": "m", "velocity": "m/s", "grid_velocity": "m/s", "stress": "Pa", "volume": "m3"}  # of frames that name none
-
-
 AT_ONCE = 1 << 20  # particles that are read at a time
 
 
@@ -28,6 +26,22 @@ def read_rows(data: h5py.Dataset, rows: np.ndarray) -> np.ndarray:
         if end > begin:
             first, last = rows[begin], rows[end - 1]
             found[begin:end] = data[first:last + 1][rows[begin:end] - first]
+    return found
+
+
+def numbers_of(rows: slice | Sequence[int] | Sequence[bool] | np.ndarray, count: int) -> np.ndarray:
+    """Numbers of particles, which rise, of a slice, of such numbers, or of a mask [count]; NoSuchResult for all else."""
+    if isinstance(rows, slice):
+        found = np.arange(*rows.indices(count))
+    else:
+        found = np.asarray(rows)
+        if found.dtype == bool and found.shape == (count,):
+            found = np.flatnonzero(found)
+    rises = found.ndim == 1 and np.all(found[1:] > found[:-1])
+    if found.size == 0:
+        return np.empty(0, dtype=int)
+    if not rises or not np.issubdtype(found.dtype, np.integer) or found[0] < 0 or found[-1] >= count:
+        raise NoSuchResult(f"rows takes a slice that goes forward, numbers from 0 to {count - 1} that rise, or {count} truth values")
     return found
 
 
@@ -91,13 +105,11 @@ class Body(Mapping[str, Any]):
         """Names that field() takes: datasets, and what follows from them."""
         return list(dict.fromkeys([*self, *(name for name, derived in DERIVED.items() if derived.is_in(self))]))
 
-    def field(self, name: str, rows: slice | Sequence[int] | np.ndarray | None = None) -> np.ndarray:
+    def field(self, name: str, rows: slice | Sequence[int] | Sequence[bool] | np.ndarray | None = None) -> np.ndarray:
         """A field of all particles, in SI units: a dataset of the frame [N] or [N, 3 or 6], or what follows from them [N]: pressure,
         effective_pressure, mises [Pa], stress_xx ... stress_zx [Pa], velocity_x ... velocity_z [m/s], speed [m/s]. rows: particles that are
-        read, in their order in the frame: a slice, or numbers that rise."""
-        if isinstance(rows, slice):
-            rows = np.arange(*rows.indices(self.count))
-        datasets = self if rows is None else Rows(self, np.asarray(rows, dtype=int))
+        read, in their order in the frame: a slice, numbers that rise, or a mask [N]."""
+        datasets = self if rows is None else Rows(self, numbers_of(rows, self.count))
         if name == "speed":
             return DERIVED["grid_velocity"].of(datasets)
         if name in self:

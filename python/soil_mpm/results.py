@@ -195,6 +195,12 @@ def read_body(path: Path | str, body: str, *fields: str) -> list[np.ndarray]:
         return [file[body][name][()] for name in fields]
 
 
+def particles_in(path: Path | str, body: str) -> int:
+    """Number of particles of a body in a frame, of which none is read; 0 where it has none."""
+    with h5py.File(path) as file:
+        return len(file[body]["position"]) if body in file and "position" in file[body] else 0
+
+
 # ---------------------------------------------------------------------------------------------- bearing capacity
 
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from soil_mpm.problems import NoSuchResult
-from soil_mpm.results import read_body, time_of
+from soil_mpm.results import particles_in, read_body, time_of
 from soil_mpm.tree import CASES
 
 ALIGNED = np.cos(np.radians(1))  # a direction that an axis has
@@ -75,14 +74,6 @@ def toes(run, body):
     return sign * np.eye(len(direction))[axis], [
         Toe(name, time, sign * (run.history[f"{body}_{column}"][rows] - run.history[f"{body}_{column}"][rows][0]))
         for name, column in columns if f"{body}_{column}" in run.history]
-
-
-def particles_in(path, body):
-    """Number of particles of a body in a frame, 0 where it has none."""
-    try:
-        return len(read_body(path, body, "position")[0])
-    except NoSuchResult:
-        return 0
 
 
 def toes_of_frames(frames, body, direction):

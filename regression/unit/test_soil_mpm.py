@@ -259,6 +259,11 @@ class Runs(unittest.TestCase):
                     np.testing.assert_array_equal(frame.corners(), box)
                     for name, field in frame.at([(1.1, 0.7), (2, 1.9)], ["stress", "mises"]).items():
                         np.testing.assert_array_equal(field, values[name])
+            low = body["position"][:, 1] < 0.5
+            np.testing.assert_array_equal(body.field("mises", low), whole["mises"][low])
+            for wrong in ([2, 1], [1, 1], [-1, 0], [0, body.count], low[1:], [0.5], 3, slice(9, 3, -1)):
+                with self.assertRaisesRegex(NoSuchResult, "rows takes"):
+                    body.field("mises", wrong)
             self.assertTrue(np.isnan(frame.at((-100, -100), "mises")["mises"]).all())
 
     def test_what_fails_has_the_words_of_the_program(self):
