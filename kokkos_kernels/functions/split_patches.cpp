@@ -32,7 +32,7 @@ struct FitsNodeBins {
   }
 };
 
-/// What a kernel of function 5 may do with the soil of a slot.
+/// Kinds of slots, by the kernel of function 5 that may take their soil.
 template <class Space, class T, int Dim>
 struct PatchKinds {
   enum Kind { near, common, other };  // near: common, and it gives to contact sums that are wanted early

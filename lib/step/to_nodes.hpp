@@ -35,9 +35,9 @@ template <class Space, class T, int Dim>
 PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim>& by,
                                  Decomposition<Space, T, Dim>* ranks);
 
-/// What contact needs in some runs of the soil at its nodes: the soil's strength, how the soil of each of
-/// several velocity fields lies round a node, and, where `boundary`, the soil's boundary. They may be there
-/// already. ranks: null where this is the only one; else `stream` is the state's own.
+/// Sums that contact needs in some runs at its nodes: the soil's strength, how the soil of each of several
+/// velocity fields lies round a node, and, where `boundary`, the soil's boundary. Function 5 may have made
+/// them already. ranks: null where this is the only one; else `stream` is the state's own.
 template <class Space, class T, int Dim>
 PetscErrorCode contacts_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
                                  const Space& stream, bool boundary = false);

@@ -13,7 +13,7 @@ K_LENGTH = 2.7                 # m, edge of the cube of soil of inputs/footing_s
 
 
 def positions(spacing, per_cell=2):
-    """Of the particles of a cube [0, K_LENGTH]^3 with cells of `spacing`, all in m; [number, 3]. What a shear moves out of the cube
+    """Positions [number, 3] of the particles of a cube [0, K_LENGTH]^3 with cells of `spacing`, all in m. What a shear moves out of the cube
     comes in at the other side."""
     count = round(per_cell * K_LENGTH / spacing)
     at = (numpy.arange(count) + 0.5) / count  # of the length
