@@ -44,6 +44,8 @@ class Deck:
         file. Comments stay where they are when it is written again."""
         deck = Deck(program=program)
         named = None if Path(path).is_file() else shipped.path_of(str(path))
+        if named is None and shipped.may_be_name(str(path)) and not Path(path).exists():
+            raise shipped.no_deck(str(path))
         object.__setattr__(deck, "_text", DeckText.of(shipped.text_of(named), str(named)) if named else DeckText.read(path))
         path = named or path
         deck._known.clear()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 import shutil
 from pathlib import Path
@@ -17,12 +18,24 @@ def names() -> list[str]:
     return sorted(path.stem for path in decks_folder().glob("*.opts"))
 
 
+def may_be_name(word: str) -> bool:
+    """Whether a word could be the name of a deck, and not a path."""
+    return re.fullmatch(r"[\w-]+", word) is not None
+
+
 def path_of(name: str) -> Path | None:
     """The file of a deck that is named so; None where there is none."""
-    if not re.fullmatch(r"[\w-]+", name):
+    if not may_be_name(name):
         return None
     path = decks_folder() / f"{name}.opts"
     return path if path.is_file() else None
+
+
+def no_deck(name: str) -> WrongDeck:
+    """The fault of a word that is neither a file nor the name of a deck; it has the nearest name."""
+    near = difflib.get_close_matches(name, names(), 1)
+    return WrongDeck(f"{name}: no deck of this name comes with the program" + (f", the nearest is {near[0]}" if near else "")
+                     + "; soil-mpm decks lists them")
 
 
 def title(name: str) -> str:
@@ -68,7 +81,7 @@ def copy(name: str, to: Path | str = "inputs") -> Path:
     """Copies a deck, with the files that it names, into a folder, and returns the deck's path. The decks name their files as inputs/NAME,
     so that a folder of that name keeps them whole. WrongDeck where there is no such deck, or the folder has another file of a name."""
     if path_of(name) is None:
-        raise WrongDeck(f"{name}: no deck of this name comes with the program; soil-mpm decks lists them")
+        raise no_deck(name)
     folder, to = decks_folder(), Path(to)
     pairs = [(path, to / path.relative_to(folder)) for path in files_of(name)]
     for path, place in pairs:

@@ -350,8 +350,12 @@ class Shipped(unittest.TestCase):
         for name in ("boulders", "rolling_boulder"):  # whose files lie beside them
             self.assertEqual(Deck.read(name).faults(), [], name)
         self.assertTrue(pathlib.Path(Deck.read("boulders").given()["rigid_bodies_file"]).is_file())
-        with self.assertRaisesRegex(WrongDeck, "cannot be read"):
+        with self.assertRaisesRegex(WrongDeck, "footing_corse: no deck .* the nearest is footing_coarse"):
+            Deck.read("footing_corse")
+        with self.assertRaisesRegex(WrongDeck, "no_such_deck: no deck of this name"):
             Deck.read("no_such_deck")
+        with self.assertRaisesRegex(WrongDeck, "cannot be read"):
+            Deck.read("no_such_deck.opts")
 
     def test_a_file_goes_before_a_name(self):
         Deck(BLOCK).write("footing_coarse")
