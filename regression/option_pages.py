@@ -40,13 +40,13 @@ def file_of(group):
     return re.sub(r"[^a-z0-9]+", "_", words.lower()).strip("_") + ".md"
 
 
-def examples(schema_text):
-    """{(group, name in the table): (line of a deck, the deck)}, of the first deck that gives the option."""
+def examples(schema_text, program):
+    """{(group, name in the table): (line of a deck, the deck)}, of the first deck that gives the option. program: whose schema it is."""
     schema, found = Schema.of_text(schema_text), {}
     for pattern in DECKS:
         for path in sorted(ROOT.glob(pattern)):
             try:
-                deck = Deck.read(path)
+                deck = Deck.read(path, program)
             except WrongDeck:  # it includes another deck by a path from elsewhere
                 continue
             names = deck.names()
@@ -91,10 +91,10 @@ def text_of(condition, link):
 
 
 class Pages:
-    """The pages of all groups. options: the list of the schema."""
+    """The pages of all groups, of a program and of what its -schema prints."""
 
-    def __init__(self, schema_text, schema):
-        self.options, self.examples = schema["options"], examples(schema_text)
+    def __init__(self, schema_text, schema, program):
+        self.options, self.examples = schema["options"], examples(schema_text, program)
         self.groups = list(dict.fromkeys(option["group"] for option in self.options))
         self.place = {}
         for option in self.options:

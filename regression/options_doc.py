@@ -77,7 +77,7 @@ def main():
     if not schema["options"]:
         sys.exit(f"options_doc: {sys.argv[1]} -schema lists no option")
     pages = {DOCUMENT: document(schema)}
-    pages |= {option_pages.FOLDER / name: page for name, page in option_pages.Pages(text, schema).all().items()}
+    pages |= {option_pages.FOLDER / name: page for name, page in option_pages.Pages(text, schema, sys.argv[1]).all().items()}
     stale = sorted(set(option_pages.FOLDER.glob("*.md")) - set(pages))
     if "--check" in sys.argv[2:]:
         differ = [path for path, page in pages.items() if not path.exists() or path.read_text() != page]
