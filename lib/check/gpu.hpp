@@ -9,7 +9,7 @@ int gpu_count();
 /// Why there are none, in CUDA's words; empty where CUDA has nothing to say.
 std::string why_no_gpu();
 
-/// Place on PCI of the GPU that Kokkos uses, as 00000000:1b:00.0; empty where the program has no CUDA. Called
+/// Place on PCI of the GPU that Kokkos uses, as 0000:1B:00.0; empty where the program has no CUDA. Called
 /// where the back end is cuda.
 std::string gpu_bus();
 

@@ -59,6 +59,7 @@ struct UpdateAboutNodes {
   using Window = NodeWindow<T>;
   using S = SoilTerms<3>;
   static constexpr int threads = Tile_::threads, teams = Tile_::teams, bins = Tile_::bins;
+  static_assert(CellWindow::cells <= threads);  // a thread loads the mean of one cell
 
   Update all;
   CellMeans<Space, T> means;  // in use with F-bar
