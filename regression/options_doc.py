@@ -4,6 +4,7 @@
 Usage: regression/options_doc.py PATH_TO_mpm [--check]   (--check: only report whether the file is up to date)
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -72,12 +73,14 @@ def document(schema):
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    text = subprocess.run([sys.argv[1], "-schema"], capture_output=True, text=True, check=True).stdout
+    program = pathlib.Path(sys.argv[1]).resolve()
+    os.chdir(option_pages.ROOT)  # decks include others by paths from there
+    text = subprocess.run([program, "-schema"], capture_output=True, text=True, check=True).stdout
     schema = json.loads(text)
     if not schema["options"]:
         sys.exit(f"options_doc: {sys.argv[1]} -schema lists no option")
     pages = {DOCUMENT: document(schema)}
-    pages |= {option_pages.FOLDER / name: page for name, page in option_pages.Pages(text, schema, sys.argv[1]).all().items()}
+    pages |= {option_pages.FOLDER / name: page for name, page in option_pages.Pages(text, schema, program).all().items()}
     stale = sorted(set(option_pages.FOLDER.glob("*.md")) - set(pages))
     if "--check" in sys.argv[2:]:
         differ = [path for path, page in pages.items() if not path.exists() or path.read_text() != page]
