@@ -82,6 +82,12 @@ class Run:
         from soil_mpm.plot.pictures import Wishes, draw_all
         return draw_all(self, list(others), Wishes(**how))[0]
 
+    def view(self, fields: Sequence[str] | str = (), time: float | None = None, **how: Any) -> Path:
+        """Draws the bodies in space of a run in 3D, by default view.png in the output folder; returns its path. how:
+        soil_mpm.plot.view.picture."""
+        from soil_mpm.plot.view import picture
+        return picture(self, fields, time, **how)
+
     def report(self, to: Path | str | None = None, pictures: bool = True) -> Path:
         """Writes one HTML file of the run (docs/report.md), by default report.html in the output folder; returns its path."""
         from soil_mpm.report import write

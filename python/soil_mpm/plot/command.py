@@ -7,9 +7,11 @@ import pathlib
 import sys
 from typing import Sequence
 
+from soil_mpm.plot.camera import parse_camera
 from soil_mpm.plot.fields import parse_slice
 from soil_mpm.plot.pictures import Wishes, draw_all, draw_element, is_element
 from soil_mpm.plot.profiles import parse_line
+from soil_mpm.plot.view import STYLES, View
 from soil_mpm.results import Run
 
 
@@ -27,6 +29,13 @@ def line_of(text):
         raise argparse.ArgumentTypeError(f"given \"{text}\", takes two points in m, as 0,1:5,1") from None
 
 
+def camera(text):
+    try:
+        return parse_camera(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"given \"{text}\", takes iso, x, y, z, or azimuth and elevation in degrees, as 240,30") from None
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="OUTPUT_DIR")
     parser.add_argument("--compare", nargs="+", default=[], metavar="OTHER_DIR", help="runs to draw in the same curves")
@@ -36,18 +45,41 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="fields of field.png and the film: a dataset of the frames, or grid_velocity, velocity_x, pressure, "
                         "mises, stress_xx and so on")
     parser.add_argument("--slice", type=slice_of, metavar="PLACE",
-                        help="in 3D: the plane that is seen, as y=0.5, z or auto: through the moving rigid, else the bodies")
+                        help="in 3D: the plane that is seen, as y=0.5, z or auto: through the moving rigid, else the bodies; with --view, "
+                        "all between it and the camera is left out")
     parser.add_argument("--factor", action="store_true",
                         help="the force over su times the area too, where a rigid is pushed along an axis into any clay")
     parser.add_argument("--profile", type=line_of, metavar="X,Y:X,Y",
                         help="fields (--field) along a line between two points, at --time or at five times of the run")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", help="an ESRI ASCII grid in the coordinates of the mesh, under the rasters")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc", help="an ESRI ASCII grid in the coordinates of the mesh, under the rasters, or with --view in space")
     parser.add_argument("--film", action="store_true", help="film.gif and, with ffmpeg, film.mp4 of all frames")
+    space = parser.add_argument_group("bodies in space, view.png, in place of all else (3D; takes pip install \"soil-mpm[3d]\")")
+    space.add_argument("--view", type=camera, metavar="CAMERA", help="seen from iso, x, y, z, or AZIMUTH,ELEVATION in degrees: 0,0 is x, 270,0 is y")
+    space.add_argument("--style", choices=STYLES, help="of the particles: cubes of their size (default), points, or the surface round them")
+    space.add_argument("--bodies", type=lambda text: text.split(","), metavar="NAME,...", help="bodies and rigid bodies that are seen, by default all")
+    space.add_argument("--forces", action="store_true", help="contact forces of bodies in pairs, as arrows")
+
+
+def view_of(arguments):
+    """The View of the words, None without --view."""
+    if arguments.view is None:
+        return None
+    return View(arguments.view, arguments.style or STYLES[0], arguments.bodies or [], arguments.forces)
+
+
+def wants_view(arguments):
+    """The line for the user where an option of --view has nothing to act on; empty where all is well."""
+    given = [name for name in ("style", "bodies", "forces") if getattr(arguments, name)]
+    return f"--{given[0]}: has a place only with --view" if given and arguments.view is None else ""
 
 
 def draw(arguments: argparse.Namespace) -> int:
     """Draws, and prints the paths; the exit status."""
-    wishes = Wishes(arguments.time, arguments.field, arguments.slice, arguments.factor, arguments.profile, arguments.terrain, arguments.film)
+    if wants_view(arguments):
+        print(f"plot: {wants_view(arguments)}", file=sys.stderr)
+        return 2
+    wishes = Wishes(arguments.time, arguments.field, arguments.slice, arguments.factor, arguments.profile, arguments.terrain, arguments.film,
+                    view_of(arguments))
     if is_element(pathlib.Path(arguments.folder)):
         paths, missing = draw_element(pathlib.Path(arguments.folder)), []
     else:

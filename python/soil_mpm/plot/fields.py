@@ -96,7 +96,7 @@ class Scene:
         self.plane, self.place = [0, 1], None
         self.where = f"t = {self.time:.4g} s" + (f", stage {stage}" if stage else "")
         if self.bodies and self.dim == 3:
-            self.cut_at(cut or Slice())
+            self.cut_at(cut)
         elif cut is not None and self.dim == 2:
             raise NothingToDraw("--slice: the run is in 2D")
         if not self.bodies:
@@ -113,11 +113,11 @@ class Scene:
             if self.run.text("geometry", "plane_strain") == "axisymmetric":  # that of the whole ring
                 volume = volume / (2 * np.pi * self.groups[name]["position"][:, 0])
             return np.median(volume) ** (1 / self.dim) if len(volume) else 0.0
-        per_cell = self.run.number(f"{name}_particles_per_cell", 2 if name in self.bodies else 4)
-        return self.run.number("mesh_spacing", 1.0) / per_cell
+        return self.run.number("mesh_spacing", 1.0) / self.run.number(f"{name}_particles_per_cell", 2 if name in self.bodies else 4)
 
     def cut_at(self, cut):
-        """Keeps the particles near the cut."""
+        """Keeps the particles near the cut, by default that of Slice()."""
+        cut = cut or Slice()
         reach = 0.75 * max(self.size(name) for name in self.bodies)
         place = place_of(self.run, self.groups, self.bodies, cut, reach)
         for name, fields in self.groups.items():

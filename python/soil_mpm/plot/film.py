@@ -20,11 +20,11 @@ def frames_of(run, until):
     return [frame for frame in run.frames if until is None or time_of(frame) <= until * (1 + 1e-9)]
 
 
-def scenes_of(run, frames, cut, report=False):
-    """A Scene of each frame in which there is a body, one at a time: together they may be more than memory holds."""
+def scenes_of(frames, scene_of, report=False):
+    """The scene of each frame in which there is a body, one at a time: together they may be more than memory holds."""
     for frame in frames:
         try:
-            yield Scene(run, frame, cut)
+            yield scene_of(frame)
         except NothingToDraw as nothing:
             if report:
                 print(f"plot: {nothing}: it is left out of the film", file=sys.stderr)
@@ -85,11 +85,15 @@ def write_mp4(pictures, rate, path):
 
 def draw_film(run, fields=(), until=None, cut=None):
     """film.gif and film.mp4 of some fields over all frames, or those up to a time [s]. Returns the paths of those made."""
-    frames = frames_of(run, until)
-    fields, box, limits = common_view(scenes_of(run, frames, cut, report=True), list(fields))
+    frames, scene_of = frames_of(run, until), lambda frame: Scene(run, frame, cut)
+    fields, box, limits = common_view(scenes_of(frames, scene_of, report=True), list(fields))
     if box is None:
         raise NothingToDraw(f"--film: {run.folder}/frames holds no frame to show")
-    pictures = [picture(scene, fields, box, limits) for scene in scenes_of(run, frames, cut)]
+    return write_film(run.folder, [picture(scene, fields, box, limits) for scene in scenes_of(frames, scene_of)])
+
+
+def write_film(folder, pictures):
+    """film.gif and film.mp4 of images of one size: paths of those made."""
     rate = min(max(len(pictures) / SECONDS, SLOWEST), FASTEST)
-    made = write_gif(pictures, rate, run.folder / "film.gif"), write_mp4(pictures, rate, run.folder / "film.mp4")
+    made = write_gif(pictures, rate, folder / "film.gif"), write_mp4(pictures, rate, folder / "film.mp4")
     return [path for path in made if path]

@@ -18,7 +18,8 @@ from soil_mpm.plot.profiles import draw_line
 class Wishes:
     """What pictures show. time [s]: of the frame, and a mark in curves; None: the last one. fields: of field.png and the film. cut: the
     plane seen in 3D (plot.fields.Slice). factor: forces over su times the area too. line: two points [2, dim] in m, along which fields
-    are drawn in place of all else. terrain: an ESRI ASCII grid under the rasters. film: film.gif of all frames."""
+    are drawn in place of all else. terrain: an ESRI ASCII grid under the rasters, and in space. film: film.gif of all frames. view: how bodies
+    in space are seen (plot.view.View), in place of all else."""
     time: float | None = None
     fields: Sequence[str] = ()
     cut: Any = None
@@ -26,10 +27,11 @@ class Wishes:
     line: Any = None
     terrain: str | None = None
     film: bool = False
+    view: Any = None
 
     def is_plain(self) -> bool:
         """Whether nothing is asked for that may be missing."""
-        return not (self.fields or self.cut or self.film or self.terrain or self.line is not None)
+        return not (self.fields or self.cut or self.film or self.terrain or self.view or self.line is not None)
 
 
 def is_element(folder: Path) -> bool:
@@ -40,6 +42,13 @@ def is_element(folder: Path) -> bool:
 def draw_element(folder: Path) -> list[Path]:
     from soil_mpm.element.figures import draw_path
     return [draw_path(folder)]
+
+
+def draw_in_space(run: Any, wishes: Wishes) -> list[Path]:
+    """view.png, and its film where one is asked for."""
+    from soil_mpm.plot.view import draw_view, draw_view_film
+    paths = [draw_view(run, wishes.view, wishes.fields, wishes.time, wishes.cut, wishes.terrain)]
+    return paths + (draw_view_film(run, wishes.view, wishes.fields, wishes.time, wishes.cut, wishes.terrain) if wishes.film else [])
 
 
 def draw_all(run: Any, others: list[Any], wishes: Wishes) -> tuple[list[Path], list[str]]:
@@ -53,7 +62,9 @@ def draw_all(run: Any, others: list[Any], wishes: Wishes) -> tuple[list[Path], l
              lambda: draw_field(run, wishes.fields, wishes.time, wishes.cut)]
     if wishes.line is not None:
         kinds = [lambda: draw_line(run, wishes.line, wishes.fields, wishes.time)]
-    if wishes.film:
+    if wishes.view is not None:
+        kinds = [lambda: draw_in_space(run, wishes)]
+    elif wishes.film:
         from soil_mpm.plot.film import draw_film
         kinds.append(lambda: draw_film(run, wishes.fields, wishes.time, wishes.cut))
     paths: list[Path] = []
