@@ -135,7 +135,7 @@ def parser_of(with_plot: bool) -> argparse.ArgumentParser:
     of_certify.add_argument("--out", metavar="FOLDER", help="of the runs")
     of_certify.add_argument("--ranks", type=int, default=1, metavar="N")
     of_certify.add_argument("--threads", type=int, metavar="N")
-    of_export = add("export", export, "write a frame as VTU, XDMF or what else meshio writes", deck=False)
+    of_export = add("export", export, "write a frame as VTKHDF, or as VTU, XDMF or what else meshio writes", deck=False)
     of_export.add_argument("folder", metavar="OUTPUT_DIR")
     of_export.add_argument("file", metavar="FILE", help="its ending chooses the format")
     of_export.add_argument("--time", type=float, metavar="SECONDS", help="of the frame, by default the last one")

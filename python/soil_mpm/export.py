@@ -1,10 +1,11 @@
-"""Frames for other programs, by meshio: points of the particles with their fields, as VTU, XDMF 3, PLY and what else meshio writes."""
+"""Frames for other programs: points of the particles with their fields, as VTKHDF, or by meshio as VTU, XDMF 3, PLY and what else it writes."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Sequence
 
+import h5py
 import numpy as np
 
 from soil_mpm.problems import Problem
@@ -21,16 +22,40 @@ def with_meshio() -> Any:
     return meshio
 
 
-def mesh_of(frame: Frame, bodies: Sequence[str] | None = None) -> Any:
-    """A meshio.Mesh of the particles of some bodies, by default of all, rigid bodies too: points [n, 3] in m, a vertex each; point data
-    are the datasets of the frame in SI units, NaN where a body lacks one, and `body`, the number of the body among `bodies`."""
-    meshio = with_meshio()
+def points_of(frame: Frame, bodies: Sequence[str] | None = None) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Particles of some bodies, by default of all, rigid bodies too: points [n, 3] in m, and the datasets of the frame in SI units
+    {name: [n] or [n, 3 or 6]}, NaN where a body lacks one, with `body`, the number of the body among `bodies`."""
     chosen = [frame[name] for name in (frame.names() if bodies is None else bodies)]
     names = list(dict.fromkeys(name for body in chosen for name in body if name != "position"))
     data = {name: np.concatenate([values_of(body, name, chosen) for body in chosen]) for name in names}
     data["body"] = np.concatenate([np.full(body.count, k, dtype=np.int32) for k, body in enumerate(chosen)])
-    points = np.concatenate([body["position"][()] for body in chosen])
+    return np.concatenate([body["position"][()] for body in chosen]), data
+
+
+def mesh_of(frame: Frame, bodies: Sequence[str] | None = None) -> Any:
+    """A meshio.Mesh of the particles of some bodies, a vertex each, with the data of points_of()."""
+    meshio = with_meshio()
+    points, data = points_of(frame, bodies)
     return meshio.Mesh(points, [("vertex", np.arange(len(points))[:, None])], point_data=data)
+
+
+def write_vtkhdf(frame: Frame, path: Path, bodies: Sequence[str] | None = None) -> None:
+    """The particles of some bodies as polygonal data of VTKHDF 2.0 (the pages of VTK on its file formats): one cell of all vertices."""
+    points, data = points_of(frame, bodies)
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = (2, 0)
+        root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
+        root["NumberOfPoints"], root["Points"] = np.array([len(points)]), points
+        for name, values in data.items():
+            root[f"PointData/{name}"] = values
+        root["FieldData/TimeValue"] = np.array([frame.time])
+        for kind in ("Vertices", "Lines", "Polygons", "Strips"):
+            numbers = np.arange(len(points) if kind == "Vertices" else 0)
+            offsets = np.array([0, len(points)] if kind == "Vertices" else [0])
+            for key, values in (("NumberOfCells", [len(offsets) - 1]), ("NumberOfConnectivityIds", [len(numbers)]), ("Offsets", offsets),
+                                ("Connectivity", numbers)):
+                root[f"{kind}/{key}"] = np.asarray(values, dtype=np.int64)
 
 
 def values_of(body: Any, name: str, bodies: Sequence[Any]) -> np.ndarray:
@@ -42,9 +67,14 @@ def values_of(body: Any, name: str, bodies: Sequence[Any]) -> np.ndarray:
 
 
 def write(frame: Frame, to: Path | str, bodies: Sequence[str] | None = None) -> Path:
-    """Writes a frame to a file whose ending chooses the format, and returns its path. Problem where meshio does not write it."""
-    meshio, path, mesh = with_meshio(), Path(to), mesh_of(frame, bodies)
+    """Writes a frame to a file whose ending chooses the format, and returns its path: .vtkhdf, or what meshio writes. Problem where meshio
+    does not write it."""
+    path = Path(to)
     path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".vtkhdf":
+        write_vtkhdf(frame, path, bodies)
+        return path
+    meshio, mesh = with_meshio(), mesh_of(frame, bodies)
     try:
         meshio.write(path, mesh)
     except (meshio.WriteError, meshio.ReadError, KeyError) as error:

@@ -119,13 +119,16 @@ def layer(run, name):
     return sheet(x, y, np.where(base < top, top, np.nan))
 
 
-def sheet(x, y, z):
-    """A surface z(x, y) on a grid [n, m], without the cells of which a corner is not finite."""
+def sheet(x, y, z, **data):
+    """A surface z(x, y) on a grid [n, m], without the cells of which a corner is not finite; data: of its points [n, m]."""
     numbers = np.arange(x.size).reshape(x.shape)
     corners = np.stack([numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:]], axis=-1).reshape(-1, 4)
     corners = corners[np.isfinite(z.ravel()[corners]).all(axis=1)]
     faces = np.insert(corners, 0, 4, axis=1).ravel()
-    return pyvista.PolyData(np.column_stack([x.ravel(), y.ravel(), np.nan_to_num(z.ravel())]), faces=faces).clean()
+    mesh = pyvista.PolyData(np.column_stack([x.ravel(), y.ravel(), np.nan_to_num(z.ravel())]), faces=faces)
+    for name, values in data.items():
+        mesh[name] = values.ravel()
+    return mesh.clean()
 
 
 # ---------------------------------------------------------------------------------------------- movement

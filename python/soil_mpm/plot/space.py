@@ -1,4 +1,4 @@
-"""Particles of a frame in space: as cubes, points, or the surface that is round them. Needs numpy and PyVista."""
+"""Particles of a frame in space: as boxes, points, or the surface that is round them. Needs numpy and PyVista."""
 
 import numpy as np
 import pyvista
@@ -9,6 +9,8 @@ from soil_mpm.plot.solids import fits, keep_side, moved, solid, with_table
 
 MOST_CELLS = 4e8      # of the grid that finds hidden particles
 MOST_NODES = 5e7      # of the grid of a surface
+CORNERS = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
+FACES = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (2, 3, 7, 6), (1, 2, 6, 5), (0, 4, 7, 3)]
 SEAM = 1.04           # of a cube over its particle, so that no gap shows where the soil has stretched
 
 
@@ -36,6 +38,8 @@ class SpaceScene(Scene):
         self.groups = {name: fields for name, fields in self.groups.items() if not self.names or name in self.names}
         self.centres = {name: fields["position"].mean(axis=0) for name, fields in self.groups.items() if len(fields["position"])}
         self.bodies = [name for name in self.bodies if name in self.groups]
+        if not self.bodies:
+            raise NothingToDraw(f"--bodies: given {','.join(self.names)}, takes a deformable body among them")
         if cut is not None:
             self.cut_off(cut, place)
 
@@ -86,12 +90,13 @@ class SpaceScene(Scene):
 
     # ------------------------------------------------------------------------------------------ meshes
 
-    def edges(self, name):
-        """Edge of the cube of each particle [N], m."""
+    def half_edges(self, name):
+        """Half of the edges of the box of each particle [N, 3], m: of its domain where the frame has it, else of a cube of its volume."""
         fields = self.groups[name]
-        if "volume" in fields:
-            return np.cbrt(fields["volume"])
-        return np.full(len(fields["position"]), self.size(name))
+        if "half_length_x" in fields:
+            return np.column_stack([fields[f"half_length_{axis}"] for axis in "xyz"])
+        edge = np.cbrt(fields["volume"]) if "volume" in fields else np.full(len(fields["position"]), self.size(name))
+        return np.repeat(edge[:, None] / 2, 3, axis=1)
 
     def seen(self, name):
         """Which particles [N] others do not hide on all sides: those of cells that have a neighbour without particles."""
@@ -108,13 +113,15 @@ class SpaceScene(Scene):
         return ~filled[tuple(cells.T)]
 
     def cubes(self, name, values=None):
-        """A cube of the size of each particle that is seen, with `values` [N]."""
+        """A box of the size of each particle that is seen, with `values` [N]."""
         seen = self.seen(name)
-        cloud = pyvista.PolyData(self.groups[name]["position"][seen])
-        cloud["edge"] = self.edges(name)[seen]
+        places, half = self.groups[name]["position"][seen], SEAM * self.half_edges(name)[seen]
+        corners = places[:, None] + half[:, None] * np.array(CORNERS)
+        faces = 8 * np.arange(len(places))[:, None, None] + np.array(FACES)
+        mesh = pyvista.PolyData(corners.reshape(-1, 3), faces=np.insert(faces.reshape(-1, 4), 0, 4, axis=1).ravel())
         if values is not None:
-            cloud["value"] = values[seen]
-        return cloud.glyph(orient=False, scale="edge", factor=SEAM, geom=pyvista.Cube())
+            mesh.cell_data["value"] = np.repeat(values[seen], len(FACES))
+        return mesh
 
     def points(self, name, values=None):
         """The particles that are seen, with `values` [N]."""
@@ -126,7 +133,7 @@ class SpaceScene(Scene):
 
     def surface(self, name, values=None):
         """The surface on which half of the space is filled, with means of `values` [N] over the particles near it."""
-        places, volumes = self.groups[name]["position"], self.edges(name) ** 3
+        places, volumes = self.groups[name]["position"], 8 * self.half_edges(name).prod(axis=1)
         lower, upper = places.min(axis=0), places.max(axis=0)
         spacing = max(self.size(name), (np.prod(upper - lower) / MOST_NODES) ** (1 / 3))
         origin = lower - 3 * spacing

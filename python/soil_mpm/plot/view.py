@@ -17,7 +17,7 @@ from soil_mpm.ground.raster import WrongRaster
 from soil_mpm.plot.camera import NAMED, axis_lines, camera_of, parse_camera
 from soil_mpm.plot.fields import NothingToDraw, colours_of, default_fields, parse_slice
 from soil_mpm.plot.film import common_view, frames_of, scenes_of, write_film
-from soil_mpm.plot.render import GREYS, pixels_of, with_pyvista
+from soil_mpm.plot.render import GREYS, Terrain, pixels_of, with_pyvista
 from soil_mpm.problems import Problem
 from soil_mpm.units import scale
 
@@ -125,6 +125,12 @@ def scene_of(run, frame, view, cut):
     return SpaceScene(run, frame, cut, camera_of(*view.camera).towards, view.names)
 
 
+def around(run, box, path):
+    """A box with the terrain of a file round it, and this Terrain; None without a file."""
+    ground = Terrain(run, path, box) if path else None
+    return ground.box if ground else box, ground
+
+
 def draw_view(run, view, fields=(), time=None, cut=None, terrain=None, to=None):
     """view.png: bodies in space in the last frame, or the one nearest to a time [s], coloured by the first of the usual fields, or a panel
     for each of some. Returns its path."""
@@ -134,7 +140,8 @@ def draw_view(run, view, fields=(), time=None, cut=None, terrain=None, to=None):
     scene = scene_of(run, frame, view, cut)
     names = list(fields) or default_fields(scene)[:1]
     limits = {name: scene.limits(name) for name in names}
-    figure = page(scene, view, names, limits, scene.box(), terrain, forces_of(view, [frame]))
+    box, ground = around(run, scene.box(), terrain)
+    figure = page(scene, view, names, limits, box, ground, forces_of(view, [frame]))
     path = to or run.folder / "view.png"
     figure.savefig(path, dpi=DPI)
     plt.close(figure)
@@ -149,10 +156,12 @@ def draw_view_film(run, view, fields=(), until=None, cut=None, terrain=None):
         raise NothingToDraw(f"--film: {run.folder}/frames holds no frame to show")
     names = list(fields) or default_fields(make(frames[-1]))[:1]
     names, box, limits = common_view(scenes_of(frames, make, report=True), names)
-    longest = forces_of(view, frames)
-    pictures = []
+    if box is None:
+        raise NothingToDraw(f"--film: {run.folder}/frames holds no frame to show")
+    box, ground = around(run, box, terrain)
+    longest, pictures = forces_of(view, frames), []
     for scene in scenes_of(frames, make):
-        figure = page(scene, view, names, limits, box, terrain, longest)
+        figure = page(scene, view, names, limits, box, ground, longest)
         figure.canvas.draw()
         pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
         plt.close(figure)

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any, Sequence
 
 from soil_mpm.plot.pictures import Wishes, draw_all, is_element
+from soil_mpm.plot.render import can_draw
+from soil_mpm.plot.view import View
 from soil_mpm.problems import NoSuchResult
 from soil_mpm.report.charts import Chart, charts_of, svg
 from soil_mpm.report.checks import DOUBT, UNKNOWN, Check, checks_of, performance_of
@@ -30,13 +32,21 @@ def write(folder: Path | str, to: Path | str | None = None, pictures: bool = Tru
     if not (of_run / "options.json").exists():
         raise NoSuchResult(f"{folder}: holds no results of a run: there is no options.json")
     run, path = Run(of_run), Path(to) if to else folder / "report.html"
-    missing = draw_all(run, [], Wishes())[1] if pictures else []
+    missing = draw_pictures(run) if pictures else []
     text = page(run, Log.read(of_run / "mpm.log"), missing, certificate_of(of_run))
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
     part.write_text(text, encoding="utf-8")
     part.replace(path)
     return path
+
+
+def draw_pictures(run: Run) -> list[str]:
+    """Draws all pictures anew, of a run in 3D the bodies in space too, where PyVista can: lines about those without data. A picture of
+    bodies in space that is newer than the last frame stays, as its camera was chosen."""
+    missing, view = draw_all(run, [], Wishes())[1], run.folder / "view.png"
+    stays = run.frame is None or view.exists() and view.stat().st_mtime > run.frame.stat().st_mtime
+    return missing + (draw_all(run, [], Wishes(view=View()))[1] if run.dim == 3 and not stays and can_draw() else [])
 
 
 def certificate_of(folder: Path) -> dict[str, Any] | None:
