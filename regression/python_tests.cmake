@@ -28,7 +28,7 @@ foreach(name spack_recipe plot ground_scripts python_modules plot_fields plot_pr
 endforeach()
 mpm_python_test(unit.soil_mpm "${threads}" unit/test_soil_mpm.py ${mpm})
 mpm_python_test(unit.export "SKIPS ${threads}" unit/test_export.py ${mpm})
-mpm_python_test(unit.plot_view "SKIPS TIMEOUT 600 ${threads}" unit/test_plot_view.py ${mpm})
+mpm_python_test(unit.plot_view "SKIPS TIMEOUT 1200 PROCESSORS 2 ${threads}" unit/test_plot_view.py ${mpm})
 mpm_python_test(unit.report_page "${threads}" unit/test_report_page.py ${mpm})
 mpm_python_test(docs.python "TIMEOUT 600 ${threads}" unit/test_python_page.py ${mpm})
 mpm_python_test(regression.certificates "LONG TIMEOUT 14400 ${threads}" certificates.py ${mpm} --out ${CMAKE_CURRENT_BINARY_DIR}/certificates)

@@ -13,6 +13,8 @@ from soil_mpm.problems import Problem
 if TYPE_CHECKING:
     from soil_mpm.frames import Frame
 
+POLY_VERTEX = 2  # type of a cell
+
 
 def with_meshio() -> Any:
     try:
@@ -40,22 +42,20 @@ def mesh_of(frame: Frame, bodies: Sequence[str] | None = None) -> Any:
 
 
 def write_vtkhdf(frame: Frame, path: Path, bodies: Sequence[str] | None = None) -> None:
-    """The particles of some bodies as polygonal data of VTKHDF 2.0 (the pages of VTK on its file formats): one cell of all vertices."""
+    """The particles of some bodies as an unstructured grid of VTKHDF 1.0 (the page of VTK on this format): one cell of all vertices."""
     points, data = points_of(frame, bodies)
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF")
-        root.attrs["Version"] = (2, 0)
-        root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
-        root["NumberOfPoints"], root["Points"] = np.array([len(points)]), points
+        root.attrs["Version"] = (1, 0)
+        root.attrs.create("Type", b"UnstructuredGrid", dtype=h5py.string_dtype("ascii", 16))
+        root["Points"] = points
+        for name, size in (("NumberOfPoints", len(points)), ("NumberOfConnectivityIds", len(points)), ("NumberOfCells", 1)):
+            root[name] = np.array([size])
+        root["Types"], root["Offsets"] = np.array([POLY_VERTEX], dtype=np.uint8), np.array([0, len(points)])
+        root["Connectivity"] = np.arange(len(points))
         for name, values in data.items():
             root[f"PointData/{name}"] = values
         root["FieldData/TimeValue"] = np.array([frame.time])
-        for kind in ("Vertices", "Lines", "Polygons", "Strips"):
-            numbers = np.arange(len(points) if kind == "Vertices" else 0)
-            offsets = np.array([0, len(points)] if kind == "Vertices" else [0])
-            for key, values in (("NumberOfCells", [len(offsets) - 1]), ("NumberOfConnectivityIds", [len(numbers)]), ("Offsets", offsets),
-                                ("Connectivity", numbers)):
-                root[f"{kind}/{key}"] = np.asarray(values, dtype=np.int64)
 
 
 def values_of(body: Any, name: str, bodies: Sequence[Any]) -> np.ndarray:
