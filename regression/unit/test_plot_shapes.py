@@ -63,7 +63,7 @@ class Outlines(Folder):
         self.check(box, lambda x, y: (x > 2) & (x < 5) & (y > 1) & (y < 2))
         c, s = np.cos(0.5), np.sin(0.5)
         along, up = (lambda x, y: c * (x - 2) + s * (y - 1)), (lambda x, y: c * (y - 1) - s * (x - 2))
-        self.check({**box, "body_angle_deg": repr(np.degrees(0.5))},
+        self.check({**box, "body_angle_deg": repr(float(np.degrees(0.5)))},
                    lambda x, y: (along(x, y) > 0) & (along(x, y) < 3) & (up(x, y) > 0) & (up(x, y) < 1))
         out = lambda x, low, high: np.maximum(np.maximum(low - x, x - high), 0)  # noqa: E731
         self.check({**box, "body_fillet": "0.4"}, lambda x, y: np.hypot(out(x, 2.4, 4.6), out(y, 1.4, 1.6)) < 0.4)
