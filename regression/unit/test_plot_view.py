@@ -178,8 +178,8 @@ class Made(unittest.TestCase):
             mesh = solids.solid(self.run_of({**parts, **{f"body_{key}": text for key, text in options.items()}}), "body")
             self.assertTrue(mesh.is_manifold, options)
             self.assertLess(abs(mesh.volume / volume - 1), 0.02, (options, mesh.volume))
-        for options in ({"shape": "stl"}, {"shape": "box", **box, "fillet": "0.2"}, {"shape": "box", **box, "cut_out": "a"}, {"shape": "layer", "top": "gone.asc",
-                                                                                                                       "base": "0"}):
+        for options in ({"shape": "stl"}, {"shape": "box", **box, "fillet": "0.2"}, {"shape": "box", **box, "cut_out": "a"},
+                        {"shape": "layer", "top": "gone.asc", "base": "0"}):
             self.assertIsNone(solids.solid(self.run_of({f"body_{key}": text for key, text in options.items()}), "body"), options)
 
     def test_a_rigid_that_turned_is_where_its_particles_are(self):

@@ -51,12 +51,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         help="the force over su times the area too, where a rigid is pushed along an axis into any clay")
     parser.add_argument("--profile", type=line_of, metavar="X,Y:X,Y",
                         help="fields (--field) along a line between two points, at --time or at five times of the run")
-    parser.add_argument("--terrain", metavar="TERRAIN.asc", help="an ESRI ASCII grid in the coordinates of the mesh, under the rasters, or with --view in space")
+    parser.add_argument("--terrain", metavar="TERRAIN.asc",
+                        help="an ESRI ASCII grid in the coordinates of the mesh, under the rasters, or with --view in space")
     parser.add_argument("--film", action="store_true", help="film.gif and, with ffmpeg, film.mp4 of all frames")
     space = parser.add_argument_group("bodies in space, view.png, in place of all else (3D; takes pip install \"soil-mpm[3d]\")")
     space.add_argument("--view", type=camera, metavar="CAMERA", help="seen from iso, x, y, z, or AZIMUTH,ELEVATION in degrees: 0,0 is x, 270,0 is y")
     space.add_argument("--style", choices=STYLES, help="of the particles: cubes of their size (default), points, or the surface round them")
-    space.add_argument("--bodies", type=lambda text: text.split(","), metavar="NAME,...", help="bodies and rigid bodies that are seen, by default all")
+    space.add_argument("--bodies", type=lambda text: text.split(","), metavar="NAME,...",
+                       help="bodies and rigid bodies that are seen, by default all")
     space.add_argument("--forces", action="store_true", help="contact forces of bodies in pairs, as arrows")
 
 
