@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pyvista
 from scipy.spatial.transform import Rotation, Slerp
+from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
 from soil_mpm.ground.raster import WrongRaster
 from soil_mpm.plot.outlines import CIRCLE, pairs, radius_over_height, surface, turned_box
@@ -115,7 +116,10 @@ def layer(run, name):
     base, top = (surface(run, name, end)(x, y) + 0 * x for end in ("base", "top"))
     if (top > base).all():  # false where one has no data
         ends = [np.stack([each, each], axis=-1) for each in (x, y)]
-        return pyvista.StructuredGrid(*ends, np.stack([base, top], axis=-1)).extract_surface(algorithm="dataset_surface").triangulate().clean()
+        outside = vtkGeometryFilter()
+        outside.SetInputData(pyvista.StructuredGrid(*ends, np.stack([base, top], axis=-1)))
+        outside.Update()
+        return pyvista.wrap(outside.GetOutput()).triangulate().clean()
     return sheet(x, y, np.where(base < top, top, np.nan))
 
 
