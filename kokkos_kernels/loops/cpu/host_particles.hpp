@@ -5,7 +5,7 @@
 #include "data/contact_core.hpp"
 #include "loops/cpu/host_laws.hpp"
 #include "loops/cpu/host_samples.hpp"
-#include "loops/cpu/host_window.hpp"
+#include "loops/cpu/host_weights.hpp"
 #include "physics/advance.hpp"
 #include "physics/walls.hpp"
 
@@ -148,33 +148,12 @@ struct HostParticles {
       load_field(soil.coordinate, p, count, x.c);
       if (!stage.one_body) body = bodies_of<R>(soil, p, count);
       const auto half = domains_of<domain, R, Dim>(soil, p, count, body);
-      alignas(R) T weight[Dim][2][3][W], shift[W], hoop[rings ? 3 : 1][W];
-      R to_first = 0;
-      with_weights_near(x, half, [&](const auto& a) {
-        // Unrolled: a loop counter as the index would copy the weights through memory once more.
-        unrolled<Dim>([&](auto d) MPM_INLINE_LAMBDA {
-          unrolled<3>([&](auto k) MPM_INLINE_LAMBDA {
-            a[d].w[k].store(weight[d][0][k]), a[d].g[k].store(weight[d][1][k]);
-          });
-          to_first += T(power(Patch<Dim>::window_edge, d)) * (a[d].first + 1);
-        });
-        if constexpr (rings)
-          for (int k = 0; k < 3; ++k) a.r.t[k].store(hoop[k]);
-      });
-      to_first.store(shift);
+      HostWeights<T, Dim, domain> weights;
+      weights.find(x, half);
       for (int l = 0; l < W; ++l) {  // also those that only fill the lanes
-        std::conditional_t<rings, RingWeights<T>, AxisWeights<T>[Dim]> a;
-        const auto set = [&](AxisWeights<T>& axis, int d) {
-          for (int k = 0; k < 3; ++k) axis.w[k] = weight[d][0][k][l], axis.g[k] = weight[d][1][k][l];
-        };
-        if constexpr (rings) {
-          set(a.r, 0), set(a.z, 1);
-          for (int k = 0; k < 3; ++k) a.r.t[k] = hoop[k][l];
-        } else {
-          for (int d = 0; d < Dim; ++d) set(a[d], d);
-        }
-        take_one(nodes[stage.base[n + Kokkos::min(l, count - 1)] + static_cast<int>(shift[l])], a, n + l,
-                 stage);
+        typename HostWeights<T, Dim, domain>::OfOne a;
+        weights.take(l, a);
+        take_one(nodes[stage.base[n + Kokkos::min(l, count - 1)] + weights.first(l)], a, n + l, stage);
       }
     }
   }
@@ -182,20 +161,8 @@ struct HostParticles {
   /// Particle n of the stage, with the weights `a`; first: the lowest node that it reaches.
   template <class Weights>
   KOKKOS_INLINE_FUNCTION void take_one(const T* first, const Weights& a, int n, Stage& stage) const {
-    constexpr int across = Patch<Dim>::window_edge;
-    Node value[1] = {T(0)}, gradient[1][slopes] = {};
-    for (int d = 0; d < slopes; ++d) gradient[0][d] = T(0);
-    interpolate_by_lines(
-        a,
-        [&](const Vector<int, Dim>& k) {
-          const int place = k[0] + across * (k[1] + (Dim == 3 ? across * k[Dim - 1] : 0));
-          struct {
-            Node v;
-            KOKKOS_INLINE_FUNCTION const Node& operator[](int) const { return v; }
-          } node{Node::load(first + place * k_node)};
-          return node;
-        },
-        value, gradient);
+    Node value[1], gradient[1][slopes];
+    sample_window<Dim>(first, a, value, gradient);
     stage.samples.put(n, value[0], gradient[0], by.inv_spacing, by.f_bar > 0);
   }
 

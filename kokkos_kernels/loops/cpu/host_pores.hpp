@@ -1,7 +1,7 @@
 #pragma once
 // update_pores on a processor: a thread takes the particles of a patch, which find the nodes in its window.
 
-#include "loops/cpu/host_window.hpp"
+#include "loops/cpu/host_weights.hpp"
 #include "loops/pore_update.hpp"
 #include "physics/walls.hpp"
 
@@ -12,7 +12,6 @@ template <class Space, class T, int Dim, ParticleDomain domain>
 struct HostPores {
   static constexpr int W = native_lanes<T>, cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   static constexpr int k_motion = NodeKinematics<Dim>::size, slopes = k_slopes<Dim, domain>;
-  static constexpr bool rings = domain == ParticleDomain::ring;
   static_assert(int(FluxTerms<Dim>::size) == k_motion);
   /// Values of a node: FluxTerms, then NodeKinematics, and a gap in 3D.
   static constexpr int k_node = Dim == 2 ? 8 : 16;
@@ -59,33 +58,14 @@ struct HostPores {
       Vector<R, Dim> x;
       load_field(soil.coordinate, p, count, x.c);
       const auto half = domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count));
-      alignas(R) T weight[Dim][2][3][W], shift[W], hoop[rings ? 3 : 1][W];
-      R to_first = 0;
-      with_weights_near(x, half, [&](const auto& a) {
-        unrolled<Dim>([&](auto d) MPM_INLINE_LAMBDA {
-          unrolled<3>([&](auto k) MPM_INLINE_LAMBDA {
-            a[d].w[k].store(weight[d][0][k]), a[d].g[k].store(weight[d][1][k]);
-          });
-          to_first += T(power(Patch<Dim>::window_edge, d)) * (a[d].first + 1);
-        });
-        if constexpr (rings)
-          for (int k = 0; k < 3; ++k) a.r.t[k].store(hoop[k]);
-      });
-      to_first.store(shift);
+      HostWeights<T, Dim, domain> weights;
+      weights.find(x, half);
       for (int l = 0; l < count; ++l) {
         if (!pores.is_wet(p + l)) continue;
-        std::conditional_t<rings, RingWeights<T>, AxisWeights<T>[Dim]> a;
-        const auto set = [&](AxisWeights<T>& axis, int d) {
-          for (int k = 0; k < 3; ++k) axis.w[k] = weight[d][0][k][l], axis.g[k] = weight[d][1][k][l];
-        };
-        if constexpr (rings) {
-          set(a.r, 0), set(a.z, 1);
-          for (int k = 0; k < 3; ++k) a.r.t[k] = hoop[k][l];
-        } else {
-          for (int d = 0; d < Dim; ++d) set(a[d], d);
-        }
+        typename HostWeights<T, Dim, domain>::OfOne a;
+        weights.take(l, a);
         const int cell = soil.cell(p + l) % cells;
-        pores.add(p + l, sample(nodes[window_base<Dim>(cell) + static_cast<int>(shift[l])], a), sums[cell]);
+        pores.add(p + l, sample(nodes[window_base<Dim>(cell) + weights.first(l)], a), sums[cell]);
       }
     }
   }
@@ -93,20 +73,8 @@ struct HostPores {
   /// Values at a particle with the weights `a`; first: the lowest node that it reaches.
   template <class Weights>
   KOKKOS_INLINE_FUNCTION PoreSample<Dim> sample(const T* first, const Weights& a) const {
-    constexpr int across = Patch<Dim>::window_edge;
-    Node value[1] = {T(0)}, gradient[1][slopes] = {};
-    for (int d = 0; d < slopes; ++d) gradient[0][d] = T(0);
-    interpolate_by_lines(
-        a,
-        [&](const Vector<int, Dim>& k) {
-          const int place = k[0] + across * (k[1] + (Dim == 3 ? across * k[Dim - 1] : 0));
-          struct {
-            Node v;
-            KOKKOS_INLINE_FUNCTION const Node& operator[](int) const { return v; }
-          } node{Node::load(first + place * k_node)};
-          return node;
-        },
-        value, gradient);
+    Node value[1], gradient[1][slopes];
+    sample_window<Dim>(first, a, value, gradient);
     PoreSample<Dim> sample;
     for (int d = 0; d < Dim; ++d) {
       sample.flux[d] = double(value[0][FluxTerms<Dim>::flux + d]);

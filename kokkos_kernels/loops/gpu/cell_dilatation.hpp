@@ -72,7 +72,8 @@ struct CellDilatations {
     int number, first, last;
   };
 
-  /// Place on the stage: the first particles of eight cells of eight are in different banks.
+  /// Place on the stage of value n: where cells have eight particles each, the first particles of eight
+  /// neighbouring cells lie in different banks.
   KOKKOS_INLINE_FUNCTION static int staged(int n) { return n ^ (n >> 3 & 7); }
 
   KOKKOS_INLINE_FUNCTION Sample load(int p, int end) const {
