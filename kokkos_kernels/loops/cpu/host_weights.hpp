@@ -18,7 +18,7 @@ struct HostWeights {
 
   /// x: coordinates [cells]; half: of the particles' domains.
   template <class Half>
-  KOKKOS_FORCEINLINE_FUNCTION void find(const Vector<R, Dim>& x, const Half& half) {
+  [[gnu::always_inline]] void find(const Vector<R, Dim>& x, const Half& half) {
     R to_first = 0;
     with_weights_near(x, half, [&](const auto& a) {
       // Unrolled: a loop counter as the index would copy the weights through memory once more.
@@ -34,7 +34,7 @@ struct HostWeights {
     to_first.store(shift);
   }
   /// Sets `a` to the weights of the particle in a lane.
-  KOKKOS_FORCEINLINE_FUNCTION void take(int lane, OfOne& a) const {
+  [[gnu::always_inline]] void take(int lane, OfOne& a) const {
     const auto set = [&](AxisWeights<T>& axis, int d) {
       for (int k = 0; k < 3; ++k) axis.w[k] = weight[d][0][k][lane], axis.g[k] = weight[d][1][k][lane];
     };
@@ -46,7 +46,7 @@ struct HostWeights {
     }
   }
   /// Place in the window of the lowest node that the particle in a lane reaches, less window_base().
-  KOKKOS_FORCEINLINE_FUNCTION int first(int lane) const { return static_cast<int>(shift[lane]); }
+  int first(int lane) const { return static_cast<int>(shift[lane]); }
 };
 
 /// Values and slopes [1/cell] at a particle with the weights `a`, of all values of a node at once. first: the
